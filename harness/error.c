@@ -15,7 +15,8 @@ enum cb_status cb_fail(enum cb_status status, const char *format, ...) {
 }
 
 enum cb_status cb_fail_memory(const char *what) {
-  return cb_fail(CB_MEMORY, "not enough memory for %s; use a smaller mesh or free some memory", what);
+  return cb_fail(CB_MEMORY, "not enough memory for %s; use a smaller mesh or free some memory",
+                 what);
 }
 
 const char *cb_error_message(void) { return message; }

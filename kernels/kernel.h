@@ -112,22 +112,21 @@ struct cb_form {
 struct cb_model {
   const char *name, *summary, *source;
   unsigned laws[2];
-  uint8_t policy;          /* enum in kernels/elements.h */
-  uint8_t memory_numbers;  /* kept per element from one update to the next */
-  bool edge_axes;          /* rest shape stored in its own edge frame (qr) */
-  bool node_frames;        /* needs one frame per node (node-warp) */
-  bool constant_operator;  /* K does not depend on x */
+  uint8_t policy, axes;                /* enums of kernels/elements.h */
+  uint8_t memory_numbers;              /* kept per element from one update to the next */
+  bool node_frames;                    /* one frame per node (node-warp) */
   struct cb_form form[CB_STORAGES][2]; /* [storage][orthotropic] */
 };
 
 /* One arithmetic: its scalar, its lanes, its models. */
 struct cb_arithmetic {
   const char *name;
-  size_t scalar_bytes, lanes, stride; /* stride: scalars per node */
-  double roundoff;                    /* unit roundoff of the scalar */
+  size_t scalar_bytes, lanes, stride;   /* stride: scalars per node */
+  double roundoff;                      /* unit roundoff of the scalar */
   const struct cb_model *const *models; /* NULL-terminated */
   void (*from_double)(size_t nodes, const double *xyz, void *vector); /* pads with 0 */
   void (*to_double)(size_t nodes, const void *vector, double *xyz);
+  const struct cb_element_functions *elements; /* kernels/arithmetics.h */
   const struct cb_step_functions *step;
 };
 extern const struct cb_arithmetic *const cb_arithmetics[]; /* NULL-terminated; f64 first */
@@ -152,7 +151,7 @@ struct cb_operator;
 /* Build every array; nothing is allocated afterwards. c scales the product
  * (c K) and must be > 0. CB_MEMORY, or CB_INPUT if the variant does not offer
  * this material. Free with cb_operator_free (NULL allowed). The mesh and the
- * material may go away. */
+ * material may go away, the variant (cb_variants: static) may not. */
 enum cb_status cb_operator_create(const struct cb_variant *variant, const struct cb_mesh *mesh,
                                   const struct cb_material *material, double c,
                                   struct cb_operator **out);
@@ -166,6 +165,7 @@ void cb_operator_reset(struct cb_operator *op);
 /* Bytes really allocated, node vectors not included. */
 size_t cb_operator_bytes(const struct cb_operator *op);
 const struct cb_variant *cb_operator_variant(const struct cb_operator *op);
+size_t cb_operator_nodes(const struct cb_operator *op);
 
 /* Block pattern of a csr or bcsr operator, and its numbers as 3x3 blocks (for
  * the direct solver): *rows = nodes, row_start[nodes+1], column[blocks].
@@ -194,8 +194,7 @@ struct cb_stepper;
  * in kg; fixed[nodes] nonzero keeps that node where it is, exactly (NULL: none).
  * CB_MEMORY. */
 enum cb_status cb_stepper_create(struct cb_operator *op, const struct cb_step_parameters *p,
-                                 const double *mass, const uint8_t *fixed,
-                                 struct cb_stepper **out);
+                                 const double *mass, const uint8_t *fixed, struct cb_stepper **out);
 void cb_stepper_free(struct cb_stepper *s);
 void cb_stepper_set_iterations(struct cb_stepper *s, size_t iterations);
 /* x, v := after one step. f_ext: external force, N, or NULL. Node vectors. */

@@ -1,0 +1,72 @@
+/* elements.h - one arithmetic's view of all elements of a mesh: the arrays that
+ * the storages run over. Elements come in packs of LANES; a number of a pack is
+ * one T. In the last pack the missing elements repeat the last one: they are
+ * computed and never scattered.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_ELEMENTS_H
+#define CB_ELEMENTS_H
+
+#include "kernels/arithmetic.h"
+#include "kernels/kernel.h"
+#include "kernels/pattern.h"
+
+/* Which strain-displacement matrix. Every one is a choice of gradients w_j of
+ * the shape functions, here already scaled by sqrt(c mu W), W = share |V0|:
+ * then c K du = [k tr(H) I + H + H^T] w_j, H = sum du_j (x) w_j, k = lambda/mu,
+ * and f = -(stress/mu) w_j sqrt(mu W / c). For an orthotropic material mu is
+ * its G_xy and the bracket is D : sym(H) / mu. */
+enum cb_policy {
+  POLICY_PRECOMPUTED,   /* w_j = R grad0_j: rest gradients, turned */
+  POLICY_UPDATED,       /* w_j = cofactors of the current edges / (6 V0) */
+  POLICY_UPDATED_VOLUME /* w_j = cofactors of the current edges / (6 V) */
+};
+
+/* In which axes an element keeps its rest shape. */
+enum cb_axes {
+  AXES_WORLD,
+  AXES_EDGES, /* Gram-Schmidt frame of the rest edges (qr) */
+  AXES_POLAR  /* polar factor of the matrix of rest edges (polar-edges) */
+};
+
+/* Numbers of one element's rest data, in this order. */
+enum {
+  REST_G = 0,      /* 9: rows grad0 of N_b, N_c, N_d in rest axes; 1/m, or scaled
+                      by sqrt(c mu W) for POLICY_PRECOMPUTED */
+  REST_EDGE = 9,   /* scale of the edges: precomputed 1/sqrt(c mu W), so that
+                      F = sum (REST_EDGE e_j) (x) REST_G_j; else 1, not read */
+  REST_W = 10,     /* updated: sqrt(c mu W)/|6 V0| (its root where the edges are
+                      scaled instead); updated-volume: sqrt(c mu W) */
+  REST_FORCE = 11, /* sqrt(mu W / c), with the sign of V0 for updated B */
+  REST_ISOTROPIC = 12,
+  REST_D = 12, /* 21: D/mu in rest axes, upper triangle by rows; orthotropic */
+  REST_ORTHOTROPIC = 33
+  /* ebe-paper with precomputed B appends B0 (12 numbers, or 9 for qr) */
+};
+
+struct cb_elements {
+  size_t nodes, tets, packs;
+  uint32_t *tet; /* [packs][4][LANES] */
+  T *rest;       /* [packs][rest_numbers] */
+  T *memory;     /* [packs][memory_numbers], zero = cold */
+  T *state;      /* [packs][state_numbers] */
+  size_t rest_numbers, memory_numbers, state_numbers;
+  size_t bytes; /* of every array here */
+  T k;          /* lambda/mu = 2 nu/(1 - 2 nu) */
+  /* assembled storages */
+  struct cb_pattern *pattern;
+  S *edge_sum;                          /* [edges][9] */
+  S *values;                            /* csr or bcsr numbers of c K */
+  uint32_t *scalar_row, *scalar_column; /* csr: [3 nodes + 1], [9 blocks] into node vectors */
+  bool assembled;                       /* values are there (constant operators keep them) */
+  /* node-warp */
+  S *node_frame; /* [nodes][9] */
+  S *node_sum;   /* [nodes][9] */
+};
+
+INLINE size_t live_lanes(const struct cb_elements *E, size_t pack) {
+  size_t rest = E->tets - pack * LANES;
+  return rest < LANES ? rest : LANES;
+}
+
+#endif

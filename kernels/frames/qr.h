@@ -1,0 +1,34 @@
+/* qr.h - element frame by Gram-Schmidt on the current edges.
+ * Source: Nesme, Payan, Faure 2005, section 2.1.
+ * Trade:  cheapest frame; the first edge keeps its direction, so the result
+ *         depends on how the four vertices are numbered.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_FRAME_QR_H
+#define CB_FRAME_QR_H
+
+#include "kernels/tensor3.h"
+
+/* R := Q, right-handed, with e_b, e_c in its first axis and first plane.
+ * in   e[9]  edges b-a, c-a, d-a, one a row, m
+ * out  R[9]  rotation, row-major; columns are the local axes
+ *      y[6]  the edges in local axes: x_b, x_c, y_c, x_d, y_d, z_d, m
+ * fail       b-a = 0, or c-a along it: NaN in that lane only */
+INLINE void frame_qr(const T *e, T *R, T *y) {
+  T q[9], r[3];
+  y[0] = SQRT(dot3(e, e));
+  T inverse = LIT(1) / y[0];
+  for (int i = 0; i < 3; i++) q[i] = inverse * e[i];
+  y[1] = dot3(q, e + 3);
+  for (int i = 0; i < 3; i++) r[i] = e[3 + i] - y[1] * q[i];
+  y[2] = SQRT(dot3(r, r));
+  inverse = LIT(1) / y[2];
+  for (int i = 0; i < 3; i++) q[3 + i] = inverse * r[i];
+  cross3(q, q + 3, q + 6);
+  for (int i = 0; i < 3; i++) {
+    y[3 + i] = dot3(q + 3 * i, e + 6);
+    for (int j = 0; j < 3; j++) R[3 * j + i] = q[3 * i + j];
+  }
+}
+
+#endif

@@ -1,0 +1,278 @@
+/* corotated.h - every corotated model: a frame x a strain-displacement policy x
+ * a material x a storage. A model file defines, then includes this once:
+ *   SPARSE          1 if the frame makes local gradients triangular (qr), else 0
+ *   NO_FRAME        1 if R = I always (linear), else 0
+ *   FRAME_ROTATION(e, F, memory, R)  the frame from edges and F; or FRAME_PACK,
+ *                   with the contract of frame_pack below
+ * and then lists its models with COROTATED_FAMILY or COROTATED_MODEL.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels/models/forms.h"
+#include "kernels/models/strain.h"
+
+#ifdef FRAME_ROTATION
+/* Frame and local first Piola-Kirchhoff stress of one pack.
+ * in      policy, exact, ortho  constants; rest; e[9] edges, m
+ * in/out  memory
+ * out     R[9]  frame; P[9] R^T (Piola stress) / mu; exact: not symmetric
+ *         y[6]  edges in local axes, m (SPARSE frames only) */
+#define FRAME_PACK frame_pack
+INLINE void frame_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
+                       const T *e, T *memory, T *R, T *P, T *y) {
+  T F[9], stretch[9];
+  (void)exact, (void)memory, (void)y;
+  deformation_gradient(policy, rest, e, F);
+  FRAME_ROTATION(e, F, memory, R);
+  STAGE(STAGE_FORCE);
+  corotated_stress(E->k, rest, ortho, R, F, stretch, P);
+}
+#endif
+
+/* w := world gradients (kernels/elements.h). */
+INLINE void world_gradients(int policy, int sparse, int frameless, const T *rest, const T *e,
+                            const T *R, T *w) {
+  const T *g = rest + REST_G;
+  if (policy == POLICY_PRECOMPUTED) {
+    for (int j = 0; j < 9; j += 3)
+      if (frameless)
+        for (int i = 0; i < 3; i++) w[j + i] = g[j + i];
+      else if (sparse && j == 3) /* grad0_c has no x, grad0_d only z */
+        for (int i = 0; i < 3; i++) w[3 + i] = R[3 * i + 1] * g[4] + R[3 * i + 2] * g[5];
+      else if (sparse && j == 6)
+        for (int i = 0; i < 3; i++) w[6 + i] = R[3 * i + 2] * g[8];
+      else
+        apply3(R, g + j, w + j);
+    return;
+  }
+  T scale = rest[REST_W];
+  edge_cofactors(e, w);
+  if (policy == POLICY_UPDATED_VOLUME) scale = scale / dot3(e, w);
+  for (int i = 0; i < 9; i++) w[i] = scale * w[i];
+}
+
+/* M := R P R^T. exact: P is not symmetric. */
+INLINE void world_stress(int exact, int frameless, const T *R, const T *P, T *M) {
+  T RP[9];
+  if (frameless)
+    for (int i = 0; i < 9; i++) M[i] = P[i];
+  else if (exact) {
+    multiply3(R, P, RP);
+    multiply3_nt(RP, R, M);
+  } else
+    rotate3_symmetric(R, P, M);
+}
+
+/* M := h s M + stress of the velocity gradient: force and product in one go. */
+INLINE void absorb(int ortho, T k, const T *rest, T h, const T *w, const T *ev, T *M) {
+  T scale = h * rest[REST_FORCE];
+  for (int i = 0; i < 9; i++) M[i] = scale * M[i];
+  if (ev) {
+    T H[9], N[9];
+    gradient3(ev, w, H);
+    stress(ortho, k, rest + REST_D, H, N);
+    for (int i = 0; i < 9; i++) M[i] = M[i] + N[i];
+  }
+  for (int i = 0; i < 9; i++) M[i] = -M[i];
+}
+
+INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T *b) {
+  if (policy == POLICY_PRECOMPUTED) {
+    for (int i = 0; i < 9; i++) b[i] = rest[REST_G + i];
+  } else {
+    T w[9];
+    world_gradients(policy, 0, 0, rest, e, R, w);
+    for (int j = 0; j < 9; j += 3) apply3_transposed(R, w + j, b + j);
+  }
+}
+
+/* Frame, gradients and force of one pack. Isotropic: w are world gradients and
+ * R is not needed afterwards; orthotropic: w are local gradients. */
+INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
+                           const T *rest, const T *e, const T *ev, T h, T *memory, T *R, T *w,
+                           T *f) {
+  T P[9], M[9], y[6], q[9], p[9];
+  FRAME_PACK(E, policy, exact, ortho, rest, e, memory, R, P, y);
+  STAGE(STAGE_B);
+  if (!ortho) {
+    world_gradients(policy, SPARSE, NO_FRAME, rest, e, R, w);
+    STAGE(STAGE_FORCE);
+    world_stress(exact, NO_FRAME, R, P, M);
+    absorb(0, E->k, rest, h, w, ev, M);
+    forces3(M, w, f);
+    return;
+  }
+  local_gradients(policy, rest, e, R, w);
+  STAGE(STAGE_FORCE);
+  if (ev)
+    for (int j = 0; j < 9; j += 3) apply3_transposed(R, ev + j, q + j);
+  absorb(1, E->k, rest, h, w, ev ? q : NULL, P);
+  forces3(P, w, p);
+  for (int j = 0; j < 9; j += 3) apply3(R, p + j, f + j);
+}
+
+/* f := c K u where R = I. */
+INLINE void frameless_product(T k, int ortho, const T *rest, const T *u, T *f) {
+  T H[9], M[9];
+  gradient3(u, rest + REST_G, H);
+  stress(ortho, k, rest + REST_D, H, M);
+  forces3(M, rest + REST_G, f);
+}
+
+/* ---- ebe: state w, or (orthotropic) R and, if it changes, b ----------------- */
+
+INLINE void corotated_ebe(const struct cb_elements *E, int policy, int exact, int ortho,
+                          const T *rest, const T *e, const T *ev, T h, T *memory, T *state, T *f) {
+  T R[9], w[9];
+  corotated_pack(E, policy, exact, ortho, rest, e, ev, h, memory, R, w, f);
+  if (NO_FRAME) return; /* the rest gradients are the world gradients */
+  if (ortho) {
+    for (int i = 0; i < 9; i++) state[i] = R[i];
+    if (policy != POLICY_PRECOMPUTED)
+      for (int i = 0; i < 9; i++) state[9 + i] = w[i];
+  } else
+    for (int i = 0; i < 9; i++) state[i] = w[i];
+}
+
+INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, int ortho, const T *rest,
+                                  const T *state, const T *u, T *f) {
+  if (NO_FRAME)
+    frameless_product(E->k, ortho, rest, u, f);
+  else if (ortho)
+    local_product(rest + REST_D, state, policy == POLICY_PRECOMPUTED ? rest + REST_G : state + 9, u,
+                  f);
+  else
+    gradients_product(E->k, state, u, f);
+}
+
+/* ---- ebe-matrix, csr, bcsr: edge products (isotropic) or blocks ------------ */
+
+INLINE void corotated_blocks(const struct cb_elements *E, int policy, int exact, int ortho,
+                             const T *rest, const T *e, const T *ev, T h, T *memory, T *X, T *f) {
+  T R[9], w[9];
+  corotated_pack(E, policy, exact, ortho, rest, e, ev, h, memory, R, w, f);
+  STAGE(STAGE_ASSEMBLY);
+  if (ortho)
+    edge_blocks_local(rest + REST_D, R, w, X);
+  else
+    edge_products(w, X);
+}
+
+/* ---- ebe-paper: state R, and B if it changes; D apart ---------------------- */
+
+/* B of one pack: computed, or from the rest data. Includes a's row. */
+INLINE const T *paper_b(int policy, int ortho, const T *rest, const T *state) {
+  if (policy != POLICY_PRECOMPUTED) return state + 9;
+  return rest + (ortho ? REST_ORTHOTROPIC : REST_ISOTROPIC);
+}
+
+INLINE void corotated_paper(const struct cb_elements *E, int policy, int exact, int ortho,
+                            const T *rest, const T *e, const T *ev, T h, T *memory, T *state,
+                            T *f) {
+  T *R = state, P[9], y[6], out[12], scale = h * rest[REST_FORCE];
+  FRAME_PACK(E, policy, exact, ortho, rest, e, memory, R, P, y);
+  STAGE(STAGE_B);
+  if (policy != POLICY_PRECOMPUTED) {
+    if (SPARSE)
+      paper_b_qr(policy == POLICY_UPDATED_VOLUME, rest[REST_W], y, state + 9);
+    else
+      paper_b_classic(policy == POLICY_UPDATED_VOLUME, rest[REST_W], R, e, state + 9);
+  }
+  const T *B = paper_b(policy, ortho, rest, state);
+  STAGE(STAGE_FORCE);
+  for (int i = 0; i < 9; i++) P[i] = scale * P[i];
+  if (ev) {
+    T u[12] = {LIT(0), LIT(0), LIT(0)}, N[9];
+    for (int i = 0; i < 9; i++) u[3 + i] = ev[i];
+    paper_stress(SPARSE, ortho, E->k, rest + REST_D, R, B, u, N);
+    for (int i = 0; i < 9; i++) P[i] = P[i] + N[i];
+  }
+  paper_forces(SPARSE, 1, R, B, P, out);
+  for (int i = 0; i < 9; i++) f[i] = -out[3 + i];
+}
+
+INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int ortho,
+                                    const T *rest, const T *state, const T *u, T *f) {
+  T P[9];
+  const T *B = paper_b(policy, ortho, rest, state);
+  paper_stress(SPARSE, ortho, E->k, rest + REST_D, state, B, u, P);
+  paper_forces(SPARSE, 0, state, B, P, f);
+}
+
+/* ---- one model: its five storages, isotropic and orthotropic ---------------- */
+
+/* Functions of model ID with the element functions bound to constants. */
+#define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
+  INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,     \
+                             T h, T *m, T *s, T *f) {                                              \
+    corotated_ebe(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, s, f);                                  \
+  }                                                                                                \
+  INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
+                                     const T *u, T *f) {                                           \
+    corotated_ebe_product(E, POLICY, ORTHO, r, s, u, f);                                           \
+  }                                                                                                \
+  INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,  \
+                                T h, T *m, T *X, T *f) {                                           \
+    corotated_blocks(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, X, f);                               \
+  }                                                                                                \
+  STORAGE_EBE(ID, TAG)                                                                             \
+  STORAGE_BLOCKS(ID, TAG, !(ORTHO))
+
+#define COROTATED_PAPER(ID, POLICY, EXACT, ORTHO, TAG)                                             \
+  INLINE void ID##_paper_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,   \
+                               T h, T *m, T *s, T *f) {                                            \
+    corotated_paper(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, s, f);                                \
+  }                                                                                                \
+  INLINE void ID##_paper_product_##TAG(const struct cb_elements *E, const T *r, const T *s,        \
+                                       const T *u, T *f) {                                         \
+    corotated_paper_product(E, POLICY, ORTHO, r, s, u, f);                                         \
+  }                                                                                                \
+  STORAGE_PAPER(ID, TAG)
+
+/* What a model keeps between update and product, per storage. */
+#define COROTATED_STATE_EBE(POLICY, ORTHO) (!(ORTHO) ? 9 : (POLICY) == POLICY_PRECOMPUTED ? 9 : 18)
+#define COROTATED_STATE_PAPER(POLICY) ((POLICY) == POLICY_PRECOMPUTED ? 9 : SPARSE ? 18 : 21)
+
+#define COROTATED(ID, POLICY, EXACT)                                                               \
+  COROTATED_FORM(ID, POLICY, EXACT, 0, iso)                                                        \
+  COROTATED_FORM(ID, POLICY, EXACT, 1, ortho)                                                      \
+  COROTATED_PAPER(ID, POLICY, EXACT, 0, iso)                                                       \
+  COROTATED_PAPER(ID, POLICY, EXACT, 1, ortho)
+
+#define COROTATED_FORMS(ID, POLICY)                                                                \
+  {                                                                                                \
+    [CB_EBE_PAPER] = {FORM_PAPER(ID, iso, COROTATED_STATE_PAPER(POLICY)),                          \
+                      FORM_PAPER(ID, ortho, COROTATED_STATE_PAPER(POLICY))},                       \
+    [CB_EBE] = {FORM_EBE(ID, iso, COROTATED_STATE_EBE(POLICY, 0)),                                 \
+                FORM_EBE(ID, ortho, COROTATED_STATE_EBE(POLICY, 1))},                              \
+    [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), FORM_MATRIX(ID, ortho)},                              \
+    [CB_CSR] = {FORM_CSR(ID, iso), FORM_CSR(ID, ortho)}, [CB_BCSR] = {                             \
+      FORM_BCSR(ID, iso),                                                                          \
+      FORM_BCSR(ID, ortho)                                                                         \
+    }                                                                                              \
+  }
+
+/* ID: C stem of the model; NAME, SUMMARY, SOURCE: strings; AXES, MEMORY: see
+ * struct cb_model; LAWS_ISO, LAWS_ORTHO: claimed laws. EXACT: P is not
+ * symmetric. */
+#define COROTATED_MODEL(ID, NAME, SUMMARY, SOURCE, POLICY, AXES, MEMORY, EXACT, LAWS_ISO,          \
+                        LAWS_ORTHO)                                                                \
+  COROTATED(ID, POLICY, EXACT)                                                                     \
+  const struct cb_model CB_NAME(cb_model_##ID) = {.name = NAME,                                    \
+                                                  .summary = SUMMARY,                              \
+                                                  .source = SOURCE,                                \
+                                                  .laws = {LAWS_ISO, LAWS_ORTHO},                  \
+                                                  .policy = POLICY,                                \
+                                                  .axes = AXES,                                    \
+                                                  .memory_numbers = MEMORY,                        \
+                                                  .form = COROTATED_FORMS(ID, POLICY)};
+
+/* The three policies of one frame. UPDATED: laws of both updated ones, for
+ * either material. */
+#define COROTATED_FAMILY(STEM, NAME, TEXT, SOURCE, AXES, MEMORY, REST_ISO, REST_ORTHO, UPDATED)    \
+  COROTATED_MODEL(STEM##_precomputed, NAME "-precomputed", TEXT ", rest B", SOURCE,                \
+                  POLICY_PRECOMPUTED, AXES, MEMORY, 0, REST_ISO, REST_ORTHO)                       \
+  COROTATED_MODEL(STEM##_updated, NAME "-updated", TEXT ", current B over rest volume", SOURCE,    \
+                  POLICY_UPDATED, AXES, MEMORY, 0, UPDATED, UPDATED)                               \
+  COROTATED_MODEL(STEM##_updated_volume, NAME "-updated-volume",                                   \
+                  TEXT ", current B over current volume", SOURCE, POLICY_UPDATED_VOLUME, AXES,     \
+                  MEMORY, 0, UPDATED, UPDATED)

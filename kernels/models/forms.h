@@ -1,0 +1,47 @@
+/* forms.h - from element functions to the functions of a cb_form. Given inline
+ * element functions ID_ebe_TAG, ID_ebe_product_TAG, ID_paper_TAG,
+ * ID_paper_product_TAG and ID_blocks_TAG, these macros instantiate the loops of
+ * each storage and name them in a descriptor.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_FORMS_H
+#define CB_FORMS_H
+
+#include "kernels/storage/blocks.h"
+#include "kernels/storage/paper.h"
+
+#define UPDATE_FUNCTION(NAME, CALL)                                                                \
+  static void NAME(struct cb_elements *E, const void *x, const void *v, double h, void *out) {     \
+    CALL;                                                                                          \
+  }
+#define PRODUCT_FUNCTION(NAME, CALL)                                                               \
+  static void NAME(const struct cb_elements *E, const void *u, void *y) { CALL; }
+
+#define STORAGE_EBE(ID, TAG)                                                                       \
+  UPDATE_FUNCTION(ID##_ebe_update_##TAG, drive_update(E, x, v, h, out, ID##_ebe_##TAG))            \
+  PRODUCT_FUNCTION(ID##_ebe_run_##TAG, drive_product(E, u, y, ID##_ebe_product_##TAG))
+#define STORAGE_PAPER(ID, TAG)                                                                     \
+  UPDATE_FUNCTION(ID##_paper_update_##TAG, drive_update(E, x, v, h, out, ID##_paper_##TAG))        \
+  PRODUCT_FUNCTION(ID##_paper_run_##TAG, drive_product_nodes(E, u, y, ID##_paper_product_##TAG))
+/* PRODUCTS: blocks come as edge products. */
+#define STORAGE_BLOCKS(ID, TAG, PRODUCTS)                                                          \
+  UPDATE_FUNCTION(ID##_matrix_update_##TAG,                                                        \
+                  drive_update_matrix(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))               \
+  UPDATE_FUNCTION(ID##_csr_update_##TAG,                                                           \
+                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS, 0))         \
+  UPDATE_FUNCTION(ID##_bcsr_update_##TAG,                                                          \
+                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS, 1))         \
+  PRODUCT_FUNCTION(ID##_matrix_run_##TAG, drive_product(E, u, y, matrix_product))
+
+#define FORM_EBE(ID, TAG, NUMBERS)                                                                 \
+  { ID##_ebe_update_##TAG, ID##_ebe_run_##TAG, NUMBERS }
+#define FORM_PAPER(ID, TAG, NUMBERS)                                                               \
+  { ID##_paper_update_##TAG, ID##_paper_run_##TAG, NUMBERS }
+#define FORM_MATRIX(ID, TAG)                                                                       \
+  { ID##_matrix_update_##TAG, ID##_matrix_run_##TAG, 54 }
+#define FORM_CSR(ID, TAG)                                                                          \
+  { ID##_csr_update_##TAG, CB_NAME(cb_product_csr), 0 }
+#define FORM_BCSR(ID, TAG)                                                                         \
+  { ID##_bcsr_update_##TAG, CB_NAME(cb_product_bcsr), 0 }
+
+#endif

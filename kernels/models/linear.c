@@ -1,0 +1,44 @@
+/* linear.c - small displacements: R = I, constant stiffness matrix.
+ * Source: Zienkiewicz & Cheung 1967; the method that corotation repairs.
+ * Trade:  nothing is computed per step but K u; a turned element inflates.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#define SPARSE 0
+#define NO_FRAME 1
+#define FRAME_ROTATION(e, F, memory, R) identity3(R)
+#include "kernels/models/corotated.h"
+
+COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 0, iso)
+COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 1, ortho)
+
+/* The matrix is assembled once; afterwards only the force pass is left. */
+#define ASSEMBLED_ONCE(NAME, FULL, FORCE)                                                          \
+  UPDATE_FUNCTION(                                                                                 \
+      NAME, if (E->assembled) FORCE(E, x, v, h, out); else {                                       \
+        FULL(E, x, v, h, out);                                                                     \
+        E->assembled = true;                                                                       \
+      })
+ASSEMBLED_ONCE(linear_csr_once_iso, linear_csr_update_iso, linear_ebe_update_iso)
+ASSEMBLED_ONCE(linear_csr_once_ortho, linear_csr_update_ortho, linear_ebe_update_ortho)
+ASSEMBLED_ONCE(linear_bcsr_once_iso, linear_bcsr_update_iso, linear_ebe_update_iso)
+ASSEMBLED_ONCE(linear_bcsr_once_ortho, linear_bcsr_update_ortho, linear_ebe_update_ortho)
+ASSEMBLED_ONCE(linear_matrix_once_iso, linear_matrix_update_iso, linear_ebe_update_iso)
+ASSEMBLED_ONCE(linear_matrix_once_ortho, linear_matrix_update_ortho, linear_ebe_update_ortho)
+
+#define LINEAR_LAWS                                                                                \
+  (CB_KEEPS(CB_LAW_NEWTON) | CB_KEEPS(CB_LAW_ENERGY) | CB_KEEPS(CB_LAW_ORDER) |                    \
+   CB_KEEPS(CB_LAW_SYMMETRIC) | CB_KEEPS(CB_LAW_SEMIDEFINITE) | CB_KEEPS(CB_LAW_TANGENT))
+
+const struct cb_model CB_NAME(cb_model_linear) = {
+    .name = "linear",
+    .summary = "small displacements, constant matrix, no frame",
+    .source = "Zienkiewicz & Cheung 1967",
+    .laws = {LINEAR_LAWS, LINEAR_LAWS},
+    .policy = POLICY_PRECOMPUTED,
+    .form = {[CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
+             [CB_EBE_MATRIX] = {{linear_matrix_once_iso, linear_matrix_run_iso, 54},
+                                {linear_matrix_once_ortho, linear_matrix_run_ortho, 54}},
+             [CB_CSR] = {{linear_csr_once_iso, CB_NAME(cb_product_csr), 0},
+                         {linear_csr_once_ortho, CB_NAME(cb_product_csr), 0}},
+             [CB_BCSR] = {{linear_bcsr_once_iso, CB_NAME(cb_product_bcsr), 0},
+                          {linear_bcsr_once_ortho, CB_NAME(cb_product_bcsr), 0}}}};

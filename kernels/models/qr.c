@@ -1,0 +1,62 @@
+/* qr.c - frame by Gram-Schmidt on the current edges, B triangular in it; and
+ * qr-exact, the true gradient of the same energy with the same rest B.
+ * Source: Nesme, Payan, Faure 2005, sections 2.1, 3.1.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels/frames/qr.h"
+#include "kernels/models/strain.h"
+
+/* Rest shapes are kept in their own edge frame Q0, so that F Q0 = Q U with
+ * U[6] = U11 U12 U22 U13 U23 U33 upper triangular. */
+INLINE void qr_stretch(int policy, const T *rest, const T *y, T *U) {
+  const T *g = rest + REST_G; /* rows b: xyz, c: 0yz, d: 00z */
+  T s[6];
+  for (int i = 0; i < 6; i++) s[i] = policy == POLICY_PRECOMPUTED ? rest[REST_EDGE] * y[i] : y[i];
+  U[0] = s[0] * g[0];
+  U[1] = s[0] * g[1] + s[1] * g[4];
+  U[2] = s[2] * g[4];
+  U[3] = s[0] * g[2] + s[1] * g[5] + s[3] * g[8];
+  U[4] = s[2] * g[5] + s[4] * g[8];
+  U[5] = s[5] * g[8];
+}
+
+INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
+  T strain[6] = {U[0] - LIT(1), U[2] - LIT(1), U[5] - LIT(1), U[1], U[4], U[3]};
+  stress_voigt(ortho, k, rest + REST_D, strain, P);
+}
+
+/* P's lower triangle := what makes Q P the gradient of W(U): the usual method
+ * drops how Q turns with x, and with that the balance of torques.
+ *   p32 = (S23 U33 - S33 U23) / U22
+ *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
+ *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11 */
+INLINE void qr_gradient(const T *U, T *P) {
+  T first = LIT(1) / U[0], second = LIT(1) / U[2];
+  T s12 = P[1], s13 = P[2], s22 = P[4], s23 = P[5], s33 = P[8];
+  P[7] = (s23 * U[5] - s33 * U[4]) * second;
+  P[6] = (s13 * U[5] - s33 * U[3] - P[7] * U[1]) * first;
+  P[3] = (s12 * U[2] + s13 * U[4] - s22 * U[1] - s23 * U[3]) * first;
+}
+
+INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
+                    const T *e, T *memory, T *R, T *P, T *y) {
+  T U[6];
+  (void)memory;
+  frame_qr(e, R, y);
+  STAGE(STAGE_FORCE);
+  qr_stretch(policy, rest, y, U);
+  qr_stress(E->k, ortho, rest, U, P);
+  if (exact) qr_gradient(U, P);
+}
+
+#define SPARSE 1
+#define NO_FRAME 0
+#define FRAME_PACK qr_pack
+#include "kernels/models/corotated.h"
+
+COROTATED_FAMILY(qr, "qr", "QR frame", "Nesme, Payan, Faure 2005", AXES_EDGES, 0, LAWS_ELEMENT,
+                 LAWS_ELEMENT, LAWS_ELEMENT | LAWS_EULER)
+COROTATED_MODEL(qr_exact, "qr-exact", "QR frame, rest B, true gradient of the energy",
+                "this project; energy of Nesme, Payan, Faure 2005", POLICY_PRECOMPUTED, AXES_EDGES,
+                0, 1, LAWS_ELEMENT | LAWS_EULER | LAWS_ENERGY,
+                LAWS_ELEMENT | LAWS_EULER | LAWS_ENERGY)

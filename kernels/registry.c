@@ -1,0 +1,54 @@
+/* registry.c - every variant model/storage/arithmetic that this binary offers.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <stdio.h>
+#include <string.h>
+
+#include "kernels/arithmetics.h"
+
+CB_DECLARE_ARITHMETIC(f64)
+CB_DECLARE_ARITHMETIC(counted)
+const struct cb_arithmetic *const cb_arithmetics[] = {&cb_arithmetic_f64, &cb_arithmetic_counted,
+                                                      NULL};
+
+const char *const cb_storage_name[CB_STORAGES] = {"ebe-paper", "ebe", "ebe-matrix", "csr", "bcsr"};
+const char *const cb_storage_summary[CB_STORAGES] = {
+    "unassembled: R, B and D apart, the paper's chain",
+    "unassembled: world-frame gradients, no frame stored",
+    "unassembled: element stiffness matrix, six 3x3 blocks",
+    "assembled: compressed scalar rows",
+    "assembled: compressed rows of 3x3 blocks",
+};
+const char *const cb_law_name[CB_LAWS] = {"rotation", "newton",    "euler",         "energy",
+                                          "order",    "symmetric", "semi-definite", "tangent"};
+
+enum { MOST = 1024 };
+static struct cb_variant variants[MOST + 1];
+static size_t variant_count;
+
+static void list_variants(void) {
+  for (const struct cb_arithmetic *const *a = cb_arithmetics; *a; a++)
+    for (const struct cb_model *const *m = (*a)->models; *m; m++)
+      for (int s = 0; s < CB_STORAGES; s++)
+        if ((*m)->form[s][0].update && variant_count < MOST)
+          variants[variant_count++] = (struct cb_variant){*m, (enum cb_storage)s, *a};
+}
+
+const struct cb_variant *cb_variants(size_t *count) {
+  if (variant_count == 0) list_variants();
+  if (count) *count = variant_count;
+  return variants;
+}
+
+void cb_variant_name(const struct cb_variant *v, char name[96]) {
+  snprintf(name, 96, "%s/%s/%s", v->model->name, cb_storage_name[v->storage], v->arithmetic->name);
+}
+
+const struct cb_variant *cb_variant_find(const char *name) {
+  for (const struct cb_variant *v = cb_variants(NULL); v->model; v++) {
+    char own[96];
+    cb_variant_name(v, own);
+    if (strcmp(own, name) == 0) return v;
+  }
+  return NULL;
+}

@@ -1,0 +1,111 @@
+/* blocks.h - storages that keep stiffness as 3x3 blocks: ebe-matrix (six blocks
+ * an element), csr and bcsr (assembled). K is symmetric and its rows sum to
+ * zero, so the six off-diagonal blocks of an element, and the blocks of the
+ * mesh's edges, are all there is: K_ji = K_ij^T, K_ii = -sum_j K_ij.
+ * Assembly sums per edge and expands once.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_BLOCKS_H
+#define CB_BLOCKS_H
+
+#include "kernels/storage/drive.h"
+
+/* One pack in an update, as update_pack_fn; X[6][9] are blocks, or what
+ * edge_products makes. */
+typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *ev,
+                            T h, T *memory, T *X, T *f);
+
+/* K := k X + X^T + tr(X) I; a macro, because X is T in elements and S in sums. */
+#define BLOCK_FROM_PRODUCT(k, X, K)                                                                \
+  do {                                                                                             \
+    __typeof__((X)[0]) k_ = (k), t_ = (X)[0] + (X)[4] + (X)[8];                                    \
+    for (int i_ = 0; i_ < 3; i_++)                                                                 \
+      for (int j_ = 0; j_ < 3; j_++) {                                                             \
+        (K)[3 * i_ + j_] = k_ * (X)[3 * i_ + j_] + (X)[3 * j_ + i_];                               \
+        if (i_ == j_) (K)[3 * i_ + j_] = (K)[3 * i_ + j_] + t_;                                    \
+      }                                                                                            \
+  } while (0)
+
+/* ---- ebe-matrix: state = six blocks --------------------------------------- */
+
+INLINE void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+                                blocks_pack_fn *blocks, int products) {
+  clear_vector(E, out);
+  for (size_t p = 0; p < E->packs; p++) {
+    const uint32_t *tet = E->tet + p * 4 * LANES;
+    T e[9], ev[9], f[9], X[54], *K = E->state + p * E->state_numbers;
+    STAGE(STAGE_FRAME);
+    gather_edges(x, tet, e);
+    if (v) gather_edges(v, tet, ev);
+    blocks(E, E->rest + p * E->rest_numbers, e, v ? ev : NULL, LIT(h),
+           E->memory + p * E->memory_numbers, X, f);
+    scatter_edges(out, tet, live_lanes(E, p), f);
+    STAGE(STAGE_ASSEMBLY);
+    for (int n = 0; n < 54; n += 9)
+      if (products)
+        BLOCK_FROM_PRODUCT(E->k, X + n, K + n);
+      else
+        for (int i = 0; i < 9; i++) K[n + i] = X[n + i];
+  }
+}
+
+/* For each edge (i, j): f_i += K_ij (u_j - u_i), f_j -= K_ij^T (u_j - u_i). */
+INLINE void matrix_product(const struct cb_elements *E, const T *rest, const T *K, const T *u,
+                           T *f) {
+  (void)E, (void)rest;
+  T y[3];
+  for (int n = 0; n < 3; n++) { /* edges from a: only the far end is kept */
+    apply3_transposed(K + 9 * n, u + 3 * n, y);
+    for (int i = 0; i < 3; i++) f[3 * n + i] = -y[i];
+  }
+  for (int n = 3; n < 6; n++) {
+    int p = cb_tet_edge[n][0] - 1, q = cb_tet_edge[n][1] - 1;
+    T d[3];
+    for (int i = 0; i < 3; i++) d[i] = u[3 * q + i] - u[3 * p + i];
+    apply3(K + 9 * n, d, y);
+    for (int i = 0; i < 3; i++) f[3 * p + i] = f[3 * p + i] + y[i];
+    apply3_transposed(K + 9 * n, d, y);
+    for (int i = 0; i < 3; i++) f[3 * q + i] = f[3 * q + i] - y[i];
+  }
+}
+
+/* ---- assembled ------------------------------------------------------------ */
+
+void CB_NAME(cb_assemble)(struct cb_elements *E, bool products, bool blocked);
+void CB_NAME(cb_product_csr)(const struct cb_elements *E, const void *u, void *y);
+void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, const void *u, void *y);
+
+/* Sums X into the edges, turned where the edge runs from high to low node. */
+INLINE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
+  const uint32_t *edge_of = E->pattern->edge_of + pack * 6 * LANES;
+  for (size_t l = 0; l < live_lanes(E, pack); l++)
+    for (int n = 0; n < 6; n++) {
+      uint32_t edge = edge_of[n * LANES + (int)l];
+      S *sum = E->edge_sum + 9 * (size_t)(edge >> 1);
+      if (edge & 1)
+        for (int i = 0; i < 9; i++) sum[i] += LANE(X[9 * n + i % 3 * 3 + i / 3], l);
+      else
+        for (int i = 0; i < 9; i++) sum[i] += LANE(X[9 * n + i], l);
+    }
+}
+
+INLINE void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+                                   blocks_pack_fn *blocks, int products, int blocked) {
+  clear_vector(E, out);
+  for (size_t i = 0; i < 9 * E->pattern->edges; i++) E->edge_sum[i] = (S)0;
+  for (size_t p = 0; p < E->packs; p++) {
+    const uint32_t *tet = E->tet + p * 4 * LANES;
+    T e[9], ev[9], f[9], X[54];
+    STAGE(STAGE_FRAME);
+    gather_edges(x, tet, e);
+    if (v) gather_edges(v, tet, ev);
+    blocks(E, E->rest + p * E->rest_numbers, e, v ? ev : NULL, LIT(h),
+           E->memory + p * E->memory_numbers, X, f);
+    scatter_edges(out, tet, live_lanes(E, p), f);
+    STAGE(STAGE_ASSEMBLY);
+    sum_edges(E, p, X);
+  }
+  CB_NAME(cb_assemble)(E, products, blocked);
+}
+
+#endif

@@ -1,0 +1,78 @@
+/* drive.h - the loops over elements: gather, one element function, scatter.
+ * A model hands its functions over as constants, so that they are inlined.
+ * Vertex a's share is minus the sum of the others (Newton's law, and
+ * translations drop out): element functions see edges b-a, c-a, d-a only.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_DRIVE_H
+#define CB_DRIVE_H
+
+#include "kernels/elements.h"
+#include "kernels/tensor3.h"
+
+/* One pack in an update.
+ * in      rest, e[9] edges (m), ev[9] edges of velocity (m/s) or NULL, h (s)
+ * in/out  memory
+ * out     state, f[9] = share of h f - c K v on b, c, d */
+typedef void update_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *ev,
+                            T h, T *memory, T *state, T *f);
+/* One pack in a product: f[9] := share of c K u on b, c, d for edges du[9]. */
+typedef void product_pack_fn(const struct cb_elements *E, const T *rest, const T *state,
+                             const T *du, T *f);
+
+/* e[9] := differences of the node vector x along b-a, c-a, d-a. */
+INLINE void gather_edges(const S *x, const uint32_t *tet, T *e) {
+  T p[12];
+  for (int j = 0; j < 4; j++)
+    for (int l = 0; l < LANES; l++) {
+      const S *node = x + STRIDE * (size_t)tet[j * LANES + l];
+      for (int i = 0; i < 3; i++) LANE(p[3 * j + i], l) = node[i];
+    }
+  for (int j = 0; j < 9; j++) e[j] = p[3 + j] - p[j % 3];
+}
+
+/* y += f on b, c, d and minus their sum on a, for the live lanes. */
+INLINE void scatter_edges(S *y, const uint32_t *tet, size_t live, const T *f) {
+  T a[3];
+  for (int i = 0; i < 3; i++) a[i] = -(f[i] + f[3 + i] + f[6 + i]);
+  STAGE(STAGE_SCATTER);
+  for (size_t l = 0; l < live; l++)
+    for (int j = 0; j < 4; j++) {
+      S *node = y + STRIDE * (size_t)tet[j * LANES + (int)l];
+      const T *part = j == 0 ? a : f + 3 * (j - 1);
+      for (int i = 0; i < 3; i++) node[i] += LANE(part[i], l);
+    }
+}
+
+INLINE void clear_vector(const struct cb_elements *E, S *y) {
+  for (size_t i = 0; i < STRIDE * E->nodes; i++) y[i] = (S)0;
+}
+
+INLINE void drive_update(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+                         update_pack_fn *update) {
+  clear_vector(E, out);
+  for (size_t p = 0; p < E->packs; p++) {
+    const uint32_t *tet = E->tet + p * 4 * LANES;
+    T e[9], ev[9], f[9];
+    STAGE(STAGE_FRAME);
+    gather_edges(x, tet, e);
+    if (v) gather_edges(v, tet, ev);
+    update(E, E->rest + p * E->rest_numbers, e, v ? ev : NULL, LIT(h),
+           E->memory + p * E->memory_numbers, E->state + p * E->state_numbers, f);
+    scatter_edges(out, tet, live_lanes(E, p), f);
+  }
+}
+
+INLINE void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
+  clear_vector(E, y);
+  for (size_t p = 0; p < E->packs; p++) {
+    const uint32_t *tet = E->tet + p * 4 * LANES;
+    T du[9], f[9];
+    STAGE(STAGE_PRODUCT);
+    gather_edges(u, tet, du);
+    product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
+    scatter_edges(y, tet, live_lanes(E, p), f);
+  }
+}
+
+#endif

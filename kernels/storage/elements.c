@@ -1,0 +1,274 @@
+/* elements.c - the arrays of one variant on one mesh, and the rest data of its
+ * elements. Rest data are computed in double (counted: in quad) and rounded.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels/elements.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/arithmetics.h"
+#include "kernels/frames/polar_higham.h"
+#include "kernels/material.h"
+
+struct layout {
+  const struct cb_model *model;
+  const struct cb_material *material;
+  bool orthotropic, paper, sparse;
+  REAL c, mu; /* scale of the product; Pa */
+};
+
+/* n zeroed elements of that size, on a cache line, counted. */
+static void *array(struct cb_elements *E, size_t n, size_t size) {
+  size_t bytes = n * size;
+  if (size && bytes / size != n) return NULL;
+  void *a = aligned_alloc(64, (bytes + 63) / 64 * 64 + 64);
+  if (a) memset(a, 0, bytes), E->bytes += bytes;
+  return a;
+}
+
+static size_t rest_numbers(const struct layout *L) {
+  size_t n = L->orthotropic ? REST_ORTHOTROPIC : REST_ISOTROPIC;
+  if (L->paper && L->model->policy == POLICY_PRECOMPUTED) n += L->sparse ? 9 : 12;
+  return n;
+}
+
+static REAL dot(const REAL *a, const REAL *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const REAL *a, const REAL *b, REAL *c) {
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    c[i] = a[j] * b[k] - a[k] * b[j];
+  }
+}
+
+/* q rows := Gram-Schmidt frame of the edges, right-handed. */
+static void edge_frame(const REAL *e, REAL *q) {
+  REAL length = real_sqrt(dot(e, e));
+  for (int i = 0; i < 3; i++) q[i] = e[i] / length;
+  REAL along = dot(q, e + 3);
+  for (int i = 0; i < 3; i++) q[3 + i] = e[3 + i] - along * q[i];
+  length = real_sqrt(dot(q + 3, q + 3));
+  for (int i = 0; i < 3; i++) q[3 + i] /= length;
+  cross(q, q + 3, q + 6);
+}
+
+/* q rows := axes in which the element keeps its rest shape. */
+static void rest_axes(int axes, const REAL *e, REAL *q) {
+  for (int i = 0; i < 9; i++) q[i] = i % 4 == 0;
+  if (axes == AXES_EDGES) edge_frame(e, q);
+  if (axes == AXES_POLAR) { /* by the very function that finds the current frame */
+    T A[9], R[9];
+    for (int i = 0; i < 9; i++) A[i] = splat((S)e[i % 3 * 3 + i / 3]);
+    frame_polar_higham(A, R);
+    for (int i = 0; i < 9; i++) q[i] = (REAL)LANE(R[i % 3 * 3 + i / 3], 0);
+  }
+}
+
+/* A := tensor of a Voigt vector; shear: factor of its shears (1/2 for strain). */
+static void tensor(const REAL *v, REAL shear, REAL *A) {
+  A[0] = v[0], A[4] = v[1], A[8] = v[2];
+  A[1] = A[3] = shear * v[3], A[5] = A[7] = shear * v[4], A[2] = A[6] = shear * v[5];
+}
+
+/* B := Q A Q^T, or Q^T A Q. */
+static void turn(const REAL *Q, bool back, const REAL *A, REAL *B) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      REAL sum = 0;
+      for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+          sum += (back ? Q[3 * k + i] * Q[3 * l + j] : Q[3 * i + k] * Q[3 * j + l]) * A[3 * k + l];
+      B[3 * i + j] = sum;
+    }
+}
+
+/* d[21] := D / mu in the axes q, packed. Column by column: unit strain in the
+ * axes, stress in the world, stress in the axes. */
+static void turned_material(const struct layout *L, const REAL *q, REAL *d) {
+  static const int at[6] = {0, 4, 8, 1, 5, 2};
+  for (int c = 0; c < 6; c++) {
+    REAL v[6] = {0}, A[9], B[9], s[6];
+    v[c] = 1;
+    tensor(v, (REAL)0.5, A);
+    turn(q, true, A, B);
+    for (int i = 0; i < 6; i++) v[i] = (i < 3 ? 1 : 2) * B[at[i]];
+    for (int i = 0; i < 6; i++) {
+      s[i] = 0;
+      for (int j = 0; j < 6; j++) s[i] += (REAL)L->material->D[6 * i + j] * v[j];
+    }
+    tensor(s, 1, A);
+    turn(q, false, A, B);
+    for (int r = 0; r <= c; r++) d[packed6(r, c)] = B[at[r]] / L->mu;
+  }
+}
+
+/* Scales of gradients, edges and forces: see the enum of kernels/elements.h. */
+static void scale_rest(const struct layout *L, REAL det, REAL share, REAL *r) {
+  REAL volume = (det < 0 ? -det : det), W = share * volume / 6;
+  REAL s = real_sqrt(L->c * L->mu * W);
+  r[REST_EDGE] = 1;
+  r[REST_W] = s;
+  r[REST_FORCE] = real_sqrt(L->mu * W / L->c);
+  if (L->model->policy == POLICY_PRECOMPUTED) {
+    for (int i = 0; i < 9; i++) r[REST_G + i] *= s;
+    r[REST_EDGE] = 1 / s;
+  }
+  if (L->model->policy == POLICY_UPDATED) {
+    r[REST_W] = s / volume;
+    if (L->paper && !L->sparse) r[REST_W] = real_sqrt(r[REST_W]);
+    if (det < 0) r[REST_FORCE] = -r[REST_FORCE];
+  }
+}
+
+/* r := rest data of tetrahedron tet. */
+static void element_rest(const struct layout *L, const struct cb_mesh *mesh, const uint32_t *tet,
+                         REAL *r) {
+  REAL e[9], q[9], y[9], *g = r + REST_G;
+  for (int i = 0; i < 9; i++)
+    e[i] = (REAL)mesh->X[3 * (size_t)tet[1 + i / 3] + (size_t)(i % 3)] -
+           (REAL)mesh->X[3 * (size_t)tet[0] + (size_t)(i % 3)];
+  rest_axes(L->model->axes, e, q);
+  for (int i = 0; i < 9; i++) y[i] = dot(q + i % 3 * 3, e + i / 3 * 3);
+  if (L->sparse) y[1] = y[2] = y[5] = 0;
+  cross(y + 3, y + 6, g), cross(y + 6, y, g + 3), cross(y, y + 3, g + 6);
+  REAL det = dot(y, g);
+  for (int i = 0; i < 9; i++) g[i] /= det;
+  scale_rest(L, det, (REAL)mesh->share, r);
+  if (L->orthotropic) turned_material(L, q, r + REST_D);
+  if (L->paper && L->model->policy == POLICY_PRECOMPUTED) {
+    REAL *B = r + (L->orthotropic ? REST_ORTHOTROPIC : REST_ISOTROPIC);
+    for (int i = 0; i < 3; i++) B[i] = -(g[i] + g[3 + i] + g[6 + i]);
+    for (int i = 0; i < 6; i++) B[3 + i] = g[L->sparse && i >= 3 ? i + 1 : i];
+    if (L->sparse)
+      B[8] = g[8];
+    else
+      for (int i = 0; i < 3; i++) B[9 + i] = g[6 + i];
+  }
+}
+
+static void fill_rest(const struct layout *L, const struct cb_mesh *mesh, struct cb_elements *E) {
+  for (size_t n = 0; n < E->packs * LANES; n++) {
+    size_t t = n < E->tets ? n : E->tets - 1, pack = n / LANES, lane = n % LANES;
+    REAL r[REST_ORTHOTROPIC + 12];
+    element_rest(L, mesh, mesh->tet + 4 * t, r);
+    for (size_t i = 0; i < E->rest_numbers; i++)
+      LANE(E->rest[pack * E->rest_numbers + i], lane) = (S)r[i];
+    for (size_t j = 0; j < 4; j++) E->tet[(pack * 4 + j) * LANES + lane] = mesh->tet[4 * t + j];
+    (void)lane;
+  }
+}
+
+/* Column indices of the scalar rows, into node vectors. */
+static enum cb_status scalar_pattern(struct cb_elements *E) {
+  const struct cb_pattern *p = E->pattern;
+  E->scalar_row = array(E, 3 * p->nodes + 1, sizeof *E->scalar_row);
+  E->scalar_column = array(E, 9 * p->blocks, sizeof *E->scalar_column);
+  if (!E->scalar_row || !E->scalar_column) return CB_MEMORY;
+  uint32_t n = 0;
+  for (size_t i = 0; i < p->nodes; i++)
+    for (int r = 0; r < 3; r++) {
+      E->scalar_row[3 * i + (size_t)r] = n;
+      for (uint32_t b = p->row_start[i]; b < p->row_start[i + 1]; b++)
+        for (uint32_t c = 0; c < 3; c++) E->scalar_column[n++] = STRIDE * p->column[b] + c;
+    }
+  E->scalar_row[3 * p->nodes] = n;
+  return CB_OK;
+}
+
+static enum cb_status assembled_arrays(const struct cb_variant *v, const struct cb_mesh *mesh,
+                                       struct cb_elements *E) {
+  enum cb_status status = cb_pattern_create(mesh, LANES, &E->pattern);
+  if (status) return status;
+  E->bytes += E->pattern->bytes;
+  E->edge_sum = array(E, 9 * E->pattern->edges, sizeof(S));
+  E->values = array(E, 9 * E->pattern->blocks, sizeof(S));
+  if (!E->edge_sum || !E->values) return CB_MEMORY;
+  return v->storage == CB_CSR ? scalar_pattern(E) : CB_OK;
+}
+
+void CB_NAME(cb_elements_free)(struct cb_elements *E) {
+  if (!E) return;
+  void *arrays[] = {E->tet,    E->rest,       E->memory,        E->state,      E->edge_sum,
+                    E->values, E->scalar_row, E->scalar_column, E->node_frame, E->node_sum};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+  cb_pattern_free(E->pattern);
+  free(E);
+}
+
+enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const struct cb_mesh *mesh,
+                                           const struct cb_material *material, double c,
+                                           struct cb_elements **out) {
+  struct layout L = {.model = v->model, .material = material, .c = (REAL)c};
+  L.orthotropic = material->orthotropic;
+  L.paper = v->storage == CB_EBE_PAPER;
+  L.sparse = v->model->axes == AXES_EDGES;
+  REAL nu = (REAL)material->poisson;
+  L.mu = L.orthotropic ? (REAL)material->D[21] : (REAL)material->young / (2 * (1 + nu));
+  struct cb_elements *E = aligned_alloc(64, (sizeof *E + 63) / 64 * 64);
+  if (!E) return CB_MEMORY;
+  memset(E, 0, sizeof *E);
+  E->nodes = mesh->nodes, E->tets = mesh->tets;
+  E->packs = (mesh->tets + LANES - 1) / LANES;
+  E->k = splat(L.orthotropic ? (S)0 : (S)(2 * nu / (1 - 2 * nu)));
+  E->rest_numbers = rest_numbers(&L);
+  E->memory_numbers = v->model->memory_numbers;
+  E->state_numbers = v->model->form[v->storage][L.orthotropic].state_numbers;
+  enum cb_status status = CB_MEMORY;
+  E->tet = array(E, E->packs * 4 * LANES, sizeof *E->tet);
+  E->rest = array(E, E->packs * E->rest_numbers, sizeof(T));
+  E->memory = array(E, E->packs * E->memory_numbers, sizeof(T));
+  E->state = array(E, E->packs * E->state_numbers, sizeof(T));
+  if (!E->tet || !E->rest || !E->memory || !E->state) goto done;
+  if (v->model->node_frames) {
+    E->node_frame = array(E, 9 * E->nodes, sizeof(S));
+    E->node_sum = array(E, 9 * E->nodes, sizeof(S));
+    if (!E->node_frame || !E->node_sum) goto done;
+  }
+  if (v->storage == CB_CSR || v->storage == CB_BCSR) {
+    status = assembled_arrays(v, mesh, E);
+    if (status) goto done;
+  }
+  fill_rest(&L, mesh, E);
+  *out = E;
+  E = NULL;
+  status = CB_OK;
+done:
+  CB_NAME(cb_elements_free)(E);
+  return status;
+}
+
+void CB_NAME(cb_elements_reset)(struct cb_elements *E) {
+  memset(E->memory, 0, E->packs * E->memory_numbers * sizeof(T));
+}
+
+size_t CB_NAME(cb_elements_bytes)(const struct cb_elements *E) { return E->bytes; }
+
+const struct cb_pattern *CB_NAME(cb_elements_pattern)(const struct cb_elements *E) {
+  return E->pattern;
+}
+
+void CB_NAME(cb_elements_blocks)(const struct cb_elements *E, double *blocks) {
+  const struct cb_pattern *p = E->pattern;
+  for (size_t i = 0; i < p->nodes; i++) {
+    size_t start = p->row_start[i], width = 3 * (p->row_start[i + 1] - start);
+    for (size_t b = start; b < p->row_start[i + 1]; b++)
+      for (size_t r = 0; r < 3; r++)
+        for (size_t c = 0; c < 3; c++)
+          blocks[9 * b + 3 * r + c] =
+              (double)E->values[E->scalar_row ? 9 * start + r * width + 3 * (b - start) + c
+                                              : 9 * b + 3 * r + c];
+  }
+}
+
+void CB_NAME(cb_from_double)(size_t nodes, const double *xyz, void *vector) {
+  S *v = vector;
+  for (size_t n = 0; n < nodes; n++)
+    for (size_t i = 0; i < STRIDE; i++) v[STRIDE * n + i] = i < 3 ? (S)xyz[3 * n + i] : (S)0;
+}
+
+void CB_NAME(cb_to_double)(size_t nodes, const void *vector, double *xyz) {
+  const S *v = vector;
+  for (size_t n = 0; n < nodes; n++)
+    for (size_t i = 0; i < 3; i++) xyz[3 * n + i] = (double)v[STRIDE * n + i];
+}
