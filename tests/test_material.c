@@ -113,6 +113,10 @@ static void orthotropic_refuses(void **state) {
     assert_int_equal(cb_material_orthotropic(p, p + 3, p + 6, p[9], &m), CB_INPUT);
     assert_memory_equal(&m, &before, sizeof m);
   }
+  /* A positive determinant alone does not do: two eigenvalues are negative. */
+  assert_int_equal(cb_material_orthotropic((double[]){1, 1, 1}, (double[]){-2, -2, -4},
+                                           (double[]){1, 1, 1}, 1, &m),
+                   CB_INPUT);
   /* Incompressible: every parameter is fine, the compliance is singular. */
   assert_int_equal(cb_material_orthotropic((double[]){1, 1, 1}, (double[]){0.5, 0.5, 0.5},
                                            (double[]){1, 1, 1}, 1, &m),

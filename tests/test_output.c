@@ -2,6 +2,7 @@
  * interrupt.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <fcntl.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -80,14 +81,19 @@ static void full_disk_leaves_the_old(void **state) {
   assert_false(exists("full.part"));
 }
 
-/* More than the stream's buffer: the failure comes before the commit. */
+/* The disk is full for a while, before the commit, and then has room again. */
 static void full_disk_in_between(void **state) {
   (void)state;
   assert_int_equal(symlink("/dev/full", temporary_path("long.part")), 0);
   struct cb_output o;
   assert_int_equal(cb_output_open(&o, temporary, "long"), CB_OK);
-  for (int i = 0; i < 100000; i++) fputs("text", o.stream);
+  fputs("lost", o.stream);
+  assert_int_equal(fflush(o.stream), EOF);
+  int room = open("/dev/null", O_WRONLY);
+  assert_true(room >= 0 && dup2(room, fileno(o.stream)) >= 0);
+  close(room);
   assert_int_equal(cb_output_commit(&o), CB_IO);
+  assert_non_null(strstr(cb_error_message(), "an earlier write failed"));
   assert_false(exists("long"));
   assert_false(exists("long.part"));
 }
