@@ -16,22 +16,21 @@ void cb_mesh_free(struct cb_mesh *mesh); /* and zero it; a zeroed mesh is allowe
  * tetrahedra. CB_INPUT for a zero count or a size that is not positive. */
 enum cb_status cb_mesh_grid(size_t nx, size_t ny, size_t nz, double edge, struct cb_mesh *mesh);
 
-/* Read by the name's ending: .node or .ele (TetGen pair, 0- or 1-based,
- * comments, attributes and markers skipped) or .msh (Gmsh 2.2 and 4.1, ASCII;
- * elements that are not 4-node tetrahedra are skipped). Nodes that no
- * tetrahedron uses are kept, so that node numbers stay the file's: node i of
- * the mesh is the file's i-th node. *first_number (may be NULL) := the number
- * of the first node in the file (numbers must be consecutive in TetGen files;
- * in Gmsh files they may be sparse, then numbers[] below tells).
- * *numbers (may be NULL) := each node's number in the file, to be freed.
+/* Read by the name's ending: .node or .ele (TetGen pair, either names both; 0-
+ * or 1-based, comments, attributes and markers skipped) or .msh (Gmsh 2.2 and
+ * 4.1, ASCII; elements that are not 4-node tetrahedra are skipped). Nodes that
+ * no tetrahedron uses are kept: node i of the mesh is the file's i-th node.
+ * *numbers (may be NULL) := each node's number in the file, to be freed: from 0
+ * or 1 without a gap in TetGen files, anything in Gmsh files.
  * CB_INPUT with file, line, what was expected; also for an element with a
- * repeated node, an index out of range, a coordinate that is not finite, a rest
- * volume that is zero to rounding. */
+ * repeated node, a node that is not there, a coordinate that is not finite, a
+ * rest volume that is zero to rounding. CB_IO, CB_MEMORY. */
 enum cb_status cb_mesh_read(const char *path, struct cb_mesh *mesh, long long **numbers);
 
 /* x[3*nodes] := positions from a CSV with the header node,x,y,z, one row a node
- * in any order, nodes named by their number in the mesh file. Missing, repeated
- * or unknown nodes, and coordinates that are not finite, are CB_INPUT. */
+ * in any order, nodes named by their number in the mesh file (numbers NULL: from
+ * 0, as in a grid). Missing, repeated or unknown nodes, and coordinates that are
+ * not finite, are CB_INPUT. CB_IO, CB_MEMORY. */
 enum cb_status cb_positions_read(const char *path, const struct cb_mesh *mesh,
                                  const long long *numbers, double *x);
 

@@ -26,9 +26,11 @@ void cb_table_number(struct cb_table *t, double value);        /* CSV, JSON: 17 
 void cb_table_missing(struct cb_table *t);                     /* CSV: empty, JSON: null, text: - */
 size_t cb_table_rows(const struct cb_table *t);
 
-/* Write the whole table; a NaN number is written "nan" (JSON: null). Text cells
- * are quoted as the format demands. CB_IO when the stream failed (recorded),
- * CB_MEMORY when a cell was lost. */
+/* Write the whole table, whose last row is full, and flush. A NaN is written
+ * "nan" (JSON: null, as is infinity). CSV is quoted by RFC 4180, its lines end
+ * in LF; JSON is an array of one object a row. CB_IO when the stream failed,
+ * CB_MEMORY when a cell was lost, CB_INPUT for JSON of text that is not UTF-8;
+ * all recorded. */
 enum cb_status cb_table_print(const struct cb_table *t, enum cb_format format, FILE *stream);
 
 #endif

@@ -58,6 +58,8 @@ enum cb_status cb_material_isotropic(double young, double poisson, double densit
 enum cb_status cb_material_orthotropic(const double E[3], const double nu[3], const double G[3],
                                        double density, struct cb_material *m);
 
+/* Six times the signed rest volume of tetrahedron e, det [b-a, c-a, d-a], m^3. */
+double cb_mesh_six_volumes(const struct cb_mesh *mesh, size_t e);
 /* mass[nodes] := a quarter of each adjacent element's mass, kg (lumped). */
 void cb_mesh_mass(const struct cb_mesh *mesh, double density, double *mass);
 
