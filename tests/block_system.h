@@ -1,0 +1,119 @@
+/* block_system.h - random symmetric block systems for the tests of reference/:
+ * springs along the edges of a grid of nodes, each with some resistance across,
+ * so that exactly the three translations cost nothing.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_TESTS_BLOCK_SYSTEM_H
+#define CB_TESTS_BLOCK_SYSTEM_H
+
+// clang-format off
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+// clang-format on
+
+#include <gsl/gsl_matrix.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct block_system {
+  size_t nodes;
+  uint32_t *row_start, *column;
+  double *blocks;
+};
+
+/* NaN fails too; prints what was measured. */
+static void assert_within(const char *what, double measured, double limit) {
+  if (!(measured <= limit)) fail_msg("%s: measured %.3g, limit %.3g", what, measured, limit);
+}
+
+static void block_system_free(struct block_system *s) {
+  free(s->row_start);
+  free(s->column);
+  free(s->blocks);
+}
+
+/* k (d d^T + I/10), d the unit vector of a random direction */
+static void random_spring(gsl_rng *rng, double block[9]) {
+  double d[3], k = exp(3 * gsl_rng_uniform(rng)), length = 0;
+  for (int i = 0; i < 3; i++) {
+    d[i] = gsl_rng_uniform(rng) - 0.5;
+    length += d[i] * d[i];
+  }
+  for (int i = 0; i < 9; i++) block[i] = k * (d[i / 3] * d[i % 3] / length + (i % 4 == 0) * 0.1);
+}
+
+/* nodes = n^3; neighbours share an edge or a diagonal of a grid's cells. */
+static struct block_system block_system_new(gsl_rng *rng, int n) {
+  size_t nodes = (size_t)(n * n * n);
+  struct block_system s = {nodes, calloc(nodes + 1, sizeof(uint32_t)),
+                           calloc(27 * nodes, sizeof(uint32_t)),
+                           calloc(9 * 27 * nodes, sizeof(double))};
+  uint32_t *diagonal = calloc(nodes, sizeof *diagonal);
+  uint32_t count = 0;
+  assert_true(s.row_start && s.column && s.blocks && diagonal);
+  for (int i = 0; i < (int)nodes; i++) {
+    for (int k = 0; k < 27; k++) {
+      int x = i % n + k % 3 - 1, y = i / n % n + k / 3 % 3 - 1, z = i / n / n + k / 9 - 1;
+      if (x < 0 || y < 0 || z < 0 || x >= n || y >= n || z >= n) continue;
+      if (k == 13) diagonal[i] = count;
+      s.column[count++] = (uint32_t)(x + n * (y + n * z));
+    }
+    s.row_start[i + 1] = count;
+  }
+  for (uint32_t i = 0; i < nodes; i++) {
+    for (uint32_t k = s.row_start[i]; k < s.row_start[i + 1]; k++) {
+      uint32_t j = s.column[k], back = s.row_start[j];
+      double spring[9];
+      if (j <= i) continue;
+      while (s.column[back] != i) back++;
+      random_spring(rng, spring);
+      for (int e = 0; e < 9; e++) {
+        s.blocks[9 * k + e] = s.blocks[9 * back + e] = -spring[e];
+        s.blocks[9 * diagonal[i] + e] += spring[e];
+        s.blocks[9 * diagonal[j] + e] += spring[e];
+      }
+    }
+  }
+  free(diagonal);
+  return s;
+}
+
+/* Row-major [3 nodes][3 nodes]; fixed (or NULL): identity rows and columns;
+ * diagonal (or NULL): added per node. To be freed. */
+static double *block_system_dense(const struct block_system *s, const uint8_t *fixed,
+                                  const double *diagonal) {
+  size_t n = 3 * s->nodes;
+  double *A = calloc(n * n, sizeof *A);
+  assert_non_null(A);
+  for (size_t i = 0; i < n; i++) {
+    for (uint32_t k = s->row_start[i / 3]; k < s->row_start[i / 3 + 1]; k++)
+      for (size_t c = 0; c < 3; c++)
+        if (!fixed || (!fixed[i / 3] && !fixed[s->column[k]]))
+          A[i * n + 3 * s->column[k] + c] = s->blocks[9 * k + 3 * (i % 3) + c];
+    A[i * n + i] = fixed && fixed[i / 3] ? 1 : A[i * n + i] + (diagonal ? diagonal[i / 3] : 0);
+  }
+  return A;
+}
+
+static double norm(size_t n, const double *x) {
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
+static double distance(size_t n, const double *x, const double *y) {
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += (x[i] - y[i]) * (x[i] - y[i]);
+  return sqrt(sum);
+}
+
+static void random_vector(gsl_rng *rng, size_t n, double *x) {
+  for (size_t i = 0; i < n; i++) x[i] = 2 * gsl_rng_uniform(rng) - 1;
+}
+
+#endif
