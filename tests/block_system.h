@@ -6,19 +6,9 @@
 #ifndef CB_TESTS_BLOCK_SYSTEM_H
 #define CB_TESTS_BLOCK_SYSTEM_H
 
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-// clang-format on
+#include "tests/vectors.h"
 
-#include <gsl/gsl_matrix.h>
-#include <gsl/gsl_rng.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct block_system {
   size_t nodes;
@@ -26,19 +16,14 @@ struct block_system {
   double *blocks;
 };
 
-/* NaN fails too; prints what was measured. */
-static void assert_within(const char *what, double measured, double limit) {
-  if (!(measured <= limit)) fail_msg("%s: measured %.3g, limit %.3g", what, measured, limit);
-}
-
-static void block_system_free(struct block_system *s) {
+static inline void block_system_free(struct block_system *s) {
   free(s->row_start);
   free(s->column);
   free(s->blocks);
 }
 
 /* k (d d^T + I/10), d the unit vector of a random direction */
-static void random_spring(gsl_rng *rng, double block[9]) {
+static inline void random_spring(gsl_rng *rng, double block[9]) {
   double d[3], k = exp(3 * gsl_rng_uniform(rng)), length = 0;
   for (int i = 0; i < 3; i++) {
     d[i] = gsl_rng_uniform(rng) - 0.5;
@@ -48,7 +33,7 @@ static void random_spring(gsl_rng *rng, double block[9]) {
 }
 
 /* nodes = n^3; neighbours share an edge or a diagonal of a grid's cells. */
-static struct block_system block_system_new(gsl_rng *rng, int n) {
+static inline struct block_system block_system_new(gsl_rng *rng, int n) {
   size_t nodes = (size_t)(n * n * n);
   struct block_system s = {nodes, calloc(nodes + 1, sizeof(uint32_t)),
                            calloc(27 * nodes, sizeof(uint32_t)),
@@ -85,8 +70,8 @@ static struct block_system block_system_new(gsl_rng *rng, int n) {
 
 /* Row-major [3 nodes][3 nodes]; fixed (or NULL): identity rows and columns;
  * diagonal (or NULL): added per node. To be freed. */
-static double *block_system_dense(const struct block_system *s, const uint8_t *fixed,
-                                  const double *diagonal) {
+static inline double *block_system_dense(const struct block_system *s, const uint8_t *fixed,
+                                         const double *diagonal) {
   size_t n = 3 * s->nodes;
   double *A = calloc(n * n, sizeof *A);
   assert_non_null(A);
@@ -98,22 +83,6 @@ static double *block_system_dense(const struct block_system *s, const uint8_t *f
     A[i * n + i] = fixed && fixed[i / 3] ? 1 : A[i * n + i] + (diagonal ? diagonal[i / 3] : 0);
   }
   return A;
-}
-
-static double norm(size_t n, const double *x) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += x[i] * x[i];
-  return sqrt(sum);
-}
-
-static double distance(size_t n, const double *x, const double *y) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += (x[i] - y[i]) * (x[i] - y[i]);
-  return sqrt(sum);
-}
-
-static void random_vector(gsl_rng *rng, size_t n, double *x) {
-  for (size_t i = 0; i < n; i++) x[i] = 2 * gsl_rng_uniform(rng) - 1;
 }
 
 #endif
