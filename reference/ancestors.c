@@ -162,16 +162,17 @@ static enum cb_status schur_columns(const struct stiffness *K, struct cb_direct 
   return status;
 }
 
-/* S := its Cholesky factor; sound pivots as in direct.c, against the diagonal of
- * K_ss, whose rounding S inherits. */
-static enum cb_status schur_factor(gsl_matrix *S, const double *diagonal) {
+/* S := its Cholesky factor. Sound pivots as in direct.c: S inherits the rounding
+ * of K_ss, whose diagonal is given, and of all unknowns that were eliminated. */
+static enum cb_status schur_factor(gsl_matrix *S, size_t unknowns, const double *diagonal) {
+  const double limit = (double)unknowns * DBL_EPSILON;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   int failed = gsl_linalg_cholesky_decomp1(S);
   gsl_set_error_handler(handler);
   if (failed) return CB_NUMERIC;
   for (size_t j = 0; j < S->size1; j++) {
     double root = gsl_matrix_get(S, j, j);
-    if (!(root * root > (double)S->size1 * DBL_EPSILON * diagonal[j])) return CB_NUMERIC;
+    if (!(root * root > limit * diagonal[j])) return CB_NUMERIC;
   }
   return CB_OK;
 }
@@ -186,7 +187,7 @@ static enum cb_status condense(const struct stiffness *K, struct cb_direct *inte
   gsl_set_error_handler(handler);
   enum cb_status status = CB_MEMORY;
   if (c->S && c->u && diagonal) status = schur_columns(K, interior, surface, c, diagonal);
-  if (status == CB_OK) status = schur_factor(c->S, diagonal);
+  if (status == CB_OK) status = schur_factor(c->S, 3 * K->nodes, diagonal);
   free(diagonal);
   return status;
 }

@@ -105,7 +105,6 @@ enum cb_status cb_direct_create(size_t nodes, const uint32_t *row_start, const u
   cholmod_l_start(&d->common);
   d->common.print = 0;
   d->common.supernodal = CHOLMOD_SUPERNODAL;
-  d->common.quick_return_if_not_posdef = 1;
   d->nodes = nodes;
   d->free_node = malloc((nodes + 1) * sizeof *d->free_node);
   if (!d->free_node) goto done;

@@ -1,6 +1,7 @@
 /* block_system.h - random symmetric block systems for the tests of reference/:
  * springs along the edges of a grid of nodes, each with some resistance across,
- * so that exactly the three translations cost nothing.
+ * every node in skew axes of its own, so that off-diagonal blocks are not
+ * symmetric and exactly three motions cost nothing.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_TESTS_BLOCK_SYSTEM_H
@@ -32,15 +33,32 @@ static inline void random_spring(gsl_rng *rng, double block[9]) {
   for (int i = 0; i < 9; i++) block[i] = k * (d[i / 3] * d[i % 3] / length + (i % 4 == 0) * 0.1);
 }
 
+/* C := A^T B */
+static inline void multiply_transposed(const double A[9], const double B[9], double C[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      C[3 * i + j] = A[i] * B[j] + A[3 + i] * B[3 + j] + A[6 + i] * B[6 + j];
+}
+
+/* Of K_ii = sum of P^T S P: symmetric to the last bit. */
+static inline void add_diagonal(const double spring[9], const double axes[9], double block[9]) {
+  double SP[9], PSP[9];
+  multiply_transposed(spring, axes, SP);
+  multiply_transposed(axes, SP, PSP);
+  for (int e = 0; e < 9; e++) block[e] += (PSP[e] + PSP[3 * (e % 3) + e / 3]) / 2;
+}
+
 /* nodes = n^3; neighbours share an edge or a diagonal of a grid's cells. */
 static inline struct block_system block_system_new(gsl_rng *rng, int n) {
   size_t nodes = (size_t)(n * n * n);
   struct block_system s = {nodes, calloc(nodes + 1, sizeof(uint32_t)),
                            calloc(27 * nodes, sizeof(uint32_t)),
                            calloc(9 * 27 * nodes, sizeof(double))};
-  uint32_t *diagonal = calloc(nodes, sizeof *diagonal);
-  uint32_t count = 0;
-  assert_true(s.row_start && s.column && s.blocks && diagonal);
+  uint32_t *diagonal = calloc(nodes, sizeof *diagonal), count = 0;
+  double *axes = calloc(9 * nodes, sizeof *axes);
+  assert_true(s.row_start && s.column && s.blocks && diagonal && axes);
+  for (size_t i = 0; i < 9 * nodes; i++)
+    axes[i] = (i % 9 % 4 == 0) + 0.4 * (gsl_rng_uniform(rng) - 0.5);
   for (int i = 0; i < (int)nodes; i++) {
     for (int k = 0; k < 27; k++) {
       int x = i % n + k % 3 - 1, y = i / n % n + k / 3 % 3 - 1, z = i / n / n + k / 9 - 1;
@@ -53,17 +71,21 @@ static inline struct block_system block_system_new(gsl_rng *rng, int n) {
   for (uint32_t i = 0; i < nodes; i++) {
     for (uint32_t k = s.row_start[i]; k < s.row_start[i + 1]; k++) {
       uint32_t j = s.column[k], back = s.row_start[j];
-      double spring[9];
+      double spring[9], SP[9], block[9];
       if (j <= i) continue;
       while (s.column[back] != i) back++;
       random_spring(rng, spring);
+      add_diagonal(spring, axes + 9 * i, s.blocks + 9 * diagonal[i]);
+      add_diagonal(spring, axes + 9 * j, s.blocks + 9 * diagonal[j]);
+      multiply_transposed(spring, axes + 9 * j, SP);
+      multiply_transposed(axes + 9 * i, SP, block);
       for (int e = 0; e < 9; e++) {
-        s.blocks[9 * k + e] = s.blocks[9 * back + e] = -spring[e];
-        s.blocks[9 * diagonal[i] + e] += spring[e];
-        s.blocks[9 * diagonal[j] + e] += spring[e];
+        s.blocks[9 * k + e] = -block[e];
+        s.blocks[9 * back + 3 * (e % 3) + e / 3] = -block[e];
       }
     }
   }
+  free(axes);
   free(diagonal);
   return s;
 }

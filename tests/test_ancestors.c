@@ -171,6 +171,27 @@ static void bodies_that_float_are_refused(void **state) {
   gsl_rng_free(rng);
 }
 
+/* A surface node on a spring that pushes. */
+static void indefinite_and_nan_are_refused(void **state) {
+  (void)state;
+  gsl_error_handler_t *before = gsl_set_error_handler(the_handler);
+  const double bad[] = {-1e4, NAN};
+  for (int i = 0; i < 2; i++) {
+    struct problem p = problem_new(10, 0.2);
+    struct cb_inverse *inverse = NULL;
+    struct cb_condensation *condensation = NULL;
+    uint32_t node = p.surface[7], k = p.s.row_start[node];
+    while (p.s.column[k] != node) k++;
+    p.fixed[node] = 0;
+    p.s.blocks[9 * k + 4] = bad[i];
+    assert_int_equal(new_inverse(&p, &inverse), CB_NUMERIC);
+    assert_int_equal(new_condensation(&p, &condensation), CB_NUMERIC);
+    assert_true(!inverse && !condensation);
+    problem_free(&p);
+  }
+  assert_true(gsl_set_error_handler(before) == the_handler);
+}
+
 static void an_empty_surface_is_refused(void **state) {
   (void)state;
   struct problem p = problem_new(0, 0.2);
@@ -203,6 +224,7 @@ int main(void) {
       cmocka_unit_test(nothing_moves_where_all_is_fixed),
       cmocka_unit_test(forces_and_displacements_are_reciprocal),
       cmocka_unit_test(bodies_that_float_are_refused),
+      cmocka_unit_test(indefinite_and_nan_are_refused),
       cmocka_unit_test(an_empty_surface_is_refused),
       cmocka_unit_test(memory_is_that_of_the_surface),
   };

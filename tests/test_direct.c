@@ -179,7 +179,7 @@ static void new_numbers_replace_old_ones(void **state) {
   problem_free(&p);
 }
 
-/* Free to translate: about one Cholesky decomposition in ten of such a matrix
+/* Free to move three ways: about one Cholesky decomposition in ten of such a matrix
  * ends without a negative pivot, so many are tried. */
 static void singular_systems_are_refused(void **state) {
   (void)state;
@@ -208,9 +208,11 @@ static void indefinite_and_nan_are_refused(void **state) {
   (void)state;
   struct problem p = problem_new(7);
   struct cb_direct *d = direct_new(&p, NULL);
-  double mass = p.mass[NODES / 2];
+  double mass = p.mass[NODES / 2], x[N];
+  assert_int_equal(cb_direct_factor(d, p.s.blocks, p.mass), CB_OK);
   p.mass[NODES / 2] = -1e6;
   assert_int_equal(cb_direct_factor(d, p.s.blocks, p.mass), CB_NUMERIC);
+  assert_int_equal(cb_direct_solve(d, p.b, x), CB_NUMERIC);
   p.mass[NODES / 2] = mass;
   assert_int_equal(cb_direct_factor(d, p.s.blocks, p.mass), CB_OK);
   for (uint32_t k = p.s.row_start[NODES / 2]; k < p.s.row_start[NODES / 2 + 1]; k++) {
