@@ -64,4 +64,36 @@ INLINE void jacobi_eigen(const T *A, T *V, T *lambda) {
   for (int i = 0; i < 3; i++) lambda[i] = B[4 * i];
 }
 
+/* Where m: exchange columns j and k, (a, b) -> (b, -a), so that V stays a rotation. */
+INLINE void principal_swap(MASK m, T *n, T *A, T *V, int j, int k) {
+  T t = n[j];
+  n[j] = SELECT(m, n[k], t), n[k] = SELECT(m, t, n[k]);
+  for (int i = 0; i < 3; i++) {
+    T a = A[3 * i + j], v = V[3 * i + j];
+    A[3 * i + j] = SELECT(m, A[3 * i + k], a), A[3 * i + k] = SELECT(m, -a, A[3 * i + k]);
+    V[3 * i + j] = SELECT(m, V[3 * i + k], v), V[3 * i + k] = SELECT(m, -v, V[3 * i + k]);
+  }
+}
+
+/* R := U V^T, det R = +1, from A = F V = U diag(s): the two longest columns of A
+ * give two axes, their cross product the third, and with it the sign of the
+ * smallest singular value. Nothing is divided by that value.
+ * in/out  n[3] squared lengths of A's columns; A[9]; V[9] rotation: sorted
+ * fail    rank A < 2: NaN in that lane */
+INLINE void frame_from_principal(T *n, T *A, T *V, T *R) {
+  T U[9], u[3], v[3], w[3], along = LIT(0);
+  principal_swap(n[0] < n[1], n, A, V, 0, 1);
+  principal_swap(n[1] < n[2], n, A, V, 1, 2);
+  principal_swap(n[0] < n[1], n, A, V, 0, 1);
+  T inverse = LIT(1) / SQRT(n[0]);
+  for (int i = 0; i < 3; i++) u[i] = A[3 * i] * inverse;
+  for (int i = 0; i < 3; i++) along = along + u[i] * A[3 * i + 1];
+  for (int i = 0; i < 3; i++) v[i] = A[3 * i + 1] - along * u[i];
+  inverse = LIT(1) / SQRT(dot3(v, v));
+  for (int i = 0; i < 3; i++) v[i] = v[i] * inverse;
+  cross3(u, v, w);
+  for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = w[i];
+  multiply3_nt(U, V, R);
+}
+
 #endif
