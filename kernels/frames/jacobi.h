@@ -8,13 +8,9 @@
 
 #include "kernels/tensor3.h"
 
-/* Sweeps to rounding: convergence is quadratic, then cubic; 3 sweeps leave 6e-6
- * in the worst of random matrices, 4 leave 1e-15. Quad precision needs a fifth. */
-#ifdef CB_COUNTED
-#define JACOBI_SWEEPS 5
-#else
+/* Sweeps to rounding in double: convergence is quadratic, then cubic; 3 sweeps
+ * leave 6e-6 in the worst of random matrices, 4 leave 1e-15. */
 #define JACOBI_SWEEPS 4
-#endif
 
 /* c, s := the rotation that makes [c -s; s c]^T [p r; r q] [c -s; s c] diagonal,
  * by the smaller angle; c = 1, s = 0 when r = 0. */

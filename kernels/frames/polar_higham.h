@@ -15,11 +15,7 @@
 /* Scaled iterations bring the singular values together, the others converge
  * quadratically. Measured by tests/test_frames.c. */
 #define HIGHAM_SCALED 4
-#ifdef CB_COUNTED
-#define HIGHAM_PLAIN 4
-#else
 #define HIGHAM_PLAIN 3
-#endif
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0.
  * in   F[9]  row-major, 1

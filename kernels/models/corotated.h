@@ -2,6 +2,7 @@
  * a material x a storage. A model file defines, then includes this once:
  *   SPARSE          1 if the frame makes local gradients triangular (qr), else 0
  *   NO_FRAME        1 if R = I always (linear), else 0
+ *   REFLECTS        defined if R may be a reflection (polar-reflected)
  *   FRAME_ROTATION(e, F, memory, R)  the frame from edges and F; or FRAME_PACK,
  *                   with the contract of frame_pack below
  * and then lists its models with COROTATED_FAMILY or COROTATED_MODEL.
@@ -47,6 +48,13 @@ INLINE void world_gradients(int policy, int sparse, int frameless, const T *rest
   T scale = rest[REST_W];
   edge_cofactors(e, w);
   if (policy == POLICY_UPDATED_VOLUME) scale = scale / dot3(e, w);
+#ifdef REFLECTS
+  if (policy == POLICY_UPDATED) { /* in a reflected frame the volume is upright: */
+    T C[9];                       /* world cofactors have the sign of det R */
+    cofactor3(R, C);
+    scale = scale * dot3(R, C);
+  }
+#endif
   for (int i = 0; i < 9; i++) w[i] = scale * w[i];
 }
 

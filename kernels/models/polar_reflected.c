@@ -6,6 +6,7 @@
 
 #define SPARSE 0
 #define NO_FRAME 0
+#define REFLECTS
 #define FRAME_ROTATION(e, F, memory, R) orthogonal_higham(F, R)
 #include "kernels/models/corotated.h"
 

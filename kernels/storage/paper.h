@@ -57,9 +57,8 @@ INLINE void paper_b_qr(int current_volume, T scale, const T *y, T *B) {
   T yczd = scale * (yc * zd), xczd = scale * (xc * zd), xbzd = scale * (xb * zd);
   T xcyd = scale * (xc * yd), ycxd = scale * (yc * xd), xbyd = scale * (xb * yd);
   T xbyc = scale * (xb * yc);
-  T db = xcyd - ycxd;
-  B[0] = -yczd, B[1] = xczd - xbzd, B[2] = xbyd - db - xbyc;
-  B[3] = yczd, B[4] = -xczd, B[5] = db;
+  B[0] = -yczd, B[1] = xczd - xbzd, B[2] = ycxd - xcyd + xbyd - xbyc;
+  B[3] = yczd, B[4] = -xczd, B[5] = xcyd - ycxd;
   B[6] = xbzd, B[7] = -xbyd;
   B[8] = xbyc;
 }
