@@ -137,7 +137,7 @@ static enum cb_status write_forces(const double *f, size_t nodes, const long lon
 static enum cb_status run(int argc, char **argv) {
   struct request r = {.young = NAN, .poisson = NAN};
   struct cb_options o;
-  const struct cb_variant *variant;
+  const struct cb_variant *variant = NULL;
   struct cb_material material;
   struct cb_mesh mesh = {0};
   long long *numbers = NULL;
