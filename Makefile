@@ -5,13 +5,22 @@ BUILD   = build
 OPT     = -O3
 WARN    = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror=implicit -Wno-psabi
 # No -ffast-math: it removes operations. No contraction: f64 rounds as `counted` counts.
-CFLAGS  = -std=gnu11 $(OPT) -g -fno-math-errno -ffp-contract=off $(WARN) $(SANFLAGS)
-CPPFLAGS = -I. -I/usr/include/suitesparse -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"' -DCB_COMMIT='"$(COMMIT)"'
+CFLAGS  = -std=gnu11 $(OPT) -g -fno-math-errno -ffp-contract=off $(WARN) $(WERROR) $(SANFLAGS)
+INCLUDES = -I. -I/usr/include/suitesparse -I/usr/local/include/suitesparse
+CPPFLAGS = $(INCLUDES) -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"'
 LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread
 # The operation counter: every quad-precision call of the counted arithmetic
 # goes through harness/counter.c.
 COUNT   = -Wl,--wrap=__addtf3,--wrap=__subtf3,--wrap=__multf3,--wrap=__divtf3,--wrap=sqrtq
 COMMIT := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+
+# As many jobs as processors unless -j says otherwise.
+JOBS   := $(shell nproc)
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(JOBS)
+endif
+# In `make setup test` the build waits for setup.
+FIRST  := $(filter setup clean,$(MAKECMDGOALS))
 
 # One source, many arithmetics: each file of $(GENERIC) is compiled once per
 # name, with the scalar and the lanes below. `counted` is -O0, so that what is
@@ -27,31 +36,73 @@ ONCE      := $(wildcard kernels/*.c reference/*.c) $(filter-out harness/corobenc
 OBJECTS   := $(ONCE:%.c=$(BUILD)/%.o) $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o))
 LANES     := $(foreach a,f64x4 f32x8,$(GENERIC:%.c=$(BUILD)/$(a)/%.o))
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+# The files that state the commit, compiled anew when it changes.
+DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*.c reference/*.c))
 
-all: $(BUILD)/corobench
+all: $(BUILD)/corobench ## build the program, build/corobench (the default)
+
+programs: all $(TESTS) ## build the program and the tests, run nothing
+
+setup: ## install the missing Debian packages (as root or through sudo)
+	@CC='$(CC)' INCLUDES='$(INCLUDES)' sh harness/setup.sh $(ALSO)
+
+test: programs ## build and run all tests; the last line is the total
+	@tests/run $(TESTS)
+
+sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
+	@$(MAKE) --no-print-directory BUILD=build-sanitize OPT=-O1 \
+	  SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' test
+
+verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
+	@$(BUILD)/corobench verify
+
+help: ## this list
+	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
+	  while IFS='|' read -r target text; do printf '  make %-9s %s\n' "$$target" "$$text"; done
+
+clean: ## remove everything built
+	rm -rf build build-*
 
 $(BUILD)/corobench: $(BUILD)/harness/corobench.o $(OBJECTS)
-	$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS)
+	@echo 'LINK $@'
+	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/%.o: %.c
+$(BUILD)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	@echo 'CC   $<'
+	@$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(DATED): $(BUILD)/commit
+$(DATED): private CPPFLAGS += -DCB_COMMIT='"$(COMMIT)"'
 
 define arithmetic_rule
-$(BUILD)/$(1)/%.o: %.c
+$(BUILD)/$(1)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $$(@D)
 	$$(CC) $$(CPPFLAGS) $$(CFLAGS) $$(ARITH_$(1)) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach a,f64 counted f64x4 f32x8,$(eval $(call arithmetic_rule,$(a))))
 
 $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
-	$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
+	@echo 'LINK $@'
+	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
 # The lanes are shown to compile and to agree; making them fast comes later.
 $(BUILD)/tests/test_lanes: $(LANES)
 
-clean:
-	rm -rf $(BUILD)
+# Goals that run something run one after the other, in the order given.
+BEFORE :=
+$(foreach goal,$(filter test sanitize verify bench plots,$(MAKECMDGOALS)), \
+  $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
-.PHONY: all clean
+# What is built under other flags, or states another commit, is out of date.
+define stamp
+@mkdir -p $(@D)
+@echo "$$STAMP" | cmp -s - $@ || echo "$$STAMP" >$@
+endef
+$(BUILD)/flags: export STAMP = $(CC) $(CPPFLAGS) $(CFLAGS) $(foreach a,f64 counted f64x4 f32x8,$(ARITH_$(a)))
+$(BUILD)/commit: export STAMP = $(COMMIT)
+$(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
+	$(stamp)
+
+.PHONY: all programs setup test sanitize verify help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

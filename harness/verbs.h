@@ -35,8 +35,10 @@ struct cb_options {
 /* Parse argv by argp (--help, --usage, --version come with it): the shared
  * options of mask into *o, the verb's own through its `options` and `parser`
  * (NULL: none), called with `state->input == input`. Bad usage: CB_INPUT,
- * recorded, never exit(); --help and --version print and exit 0.
- * A glob that selects nothing is CB_INPUT and names the close matches. */
+ * recorded, never exit(); --help, --usage and --version print and exit 0.
+ * A glob that selects nothing is CB_INPUT and names the close matches. *o is
+ * untouched on failure; its texts are argv's own. No verb takes arguments
+ * that are not options: the verb's parser does not see them. */
 enum cb_status cb_options_parse(int argc, char **argv, unsigned mask, const char *doc,
                                 const struct argp_option *options, argp_parser_t parser,
                                 void *input, struct cb_options *o);
@@ -47,7 +49,11 @@ bool cb_options_selects(const struct cb_options *o, const struct cb_variant *v);
  * the option's name, what was given and the range. */
 enum cb_status cb_parse_number(const char *option, const char *text, double low, double high,
                                double *value);
+/* A whole number in [low, high], likewise; digits only. */
 enum cb_status cb_parse_count(const char *option, const char *text, unsigned long low,
                               unsigned long high, unsigned long *value);
+
+/* Flush standard output: CB_IO, recorded, if anything written there was lost. */
+enum cb_status cb_stdout_flush(void);
 
 #endif
