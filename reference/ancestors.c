@@ -45,7 +45,7 @@ static enum cb_status factor_new(const struct stiffness *K, const uint8_t *fixed
 
 struct cb_inverse {
   size_t n;  /* surface unknowns, 3 a node */
-  double *G; /* n*n, column j: surface displacement under a unit force at j */
+  double *G; /* n*n row-major, column j: surface displacement under a unit force at j */
 };
 
 /* Fixed nodes need no case of their own: their columns and rows come out 0. */
@@ -60,7 +60,7 @@ static enum cb_status inverse_columns(struct cb_direct *d, size_t nodes, const u
     if (status != CB_OK) goto done;
     b[mesh_place(surface, j)] = 0;
     for (size_t i = 0; i < inverse->n; i++)
-      inverse->G[j * inverse->n + i] = x[mesh_place(surface, i)];
+      inverse->G[i * inverse->n + j] = x[mesh_place(surface, i)];
   }
 done:
   free(b);
@@ -101,7 +101,9 @@ void cb_inverse_free(struct cb_inverse *inverse) {
 
 void cb_inverse_apply(const struct cb_inverse *inverse, const double *f, double *u) {
   int n = (int)inverse->n;
-  cblas_dgemv(CblasColMajor, CblasNoTrans, n, n, 1, inverse->G, n, f, 1, 0, u, 1);
+  /* By rows: by columns GSL skips the zeros of f, and the time of a product would
+   * depend on how many nodes are loaded. */
+  cblas_dgemv(CblasRowMajor, CblasNoTrans, n, n, 1, inverse->G, n, f, 1, 0, u, 1);
 }
 
 size_t cb_inverse_bytes(const struct cb_inverse *inverse) {

@@ -28,7 +28,8 @@ enum cb_status cb_inverse_create(size_t nodes, const uint32_t *row_start, const 
                                  const uint32_t *surface, struct cb_inverse **out);
 void cb_inverse_free(struct cb_inverse *inverse);
 /* u[3*count] := displacement under f[3*count], nodes in the order of `surface`;
- * exactly 0 at fixed nodes. u must not overlap f. */
+ * exactly 0 at fixed nodes. u must not overlap f (f would be lost). The work does
+ * not depend on f. */
 void cb_inverse_apply(const struct cb_inverse *inverse, const double *f, double *u);
 size_t cb_inverse_bytes(const struct cb_inverse *inverse);
 
