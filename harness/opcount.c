@@ -57,3 +57,18 @@ done:
   free(x);
   return status;
 }
+
+enum cb_status cb_operations_table(struct cb_table *table, const struct cb_variant *variant) {
+  struct cb_operations operations[STAGES];
+  enum cb_status status = cb_operations_count(variant, operations);
+  for (int stage = 0; stage < STAGES && !status; stage++) {
+    cb_table_text(table, variant->model->name);
+    cb_table_text(table, cb_storage_name[variant->storage]);
+    cb_table_text(table, cb_stage_name[stage]);
+    cb_table_number(table, operations[stage].mul);
+    cb_table_number(table, operations[stage].add);
+    cb_table_number(table, operations[stage].div);
+    cb_table_number(table, operations[stage].sqrt);
+  }
+  return status;
+}

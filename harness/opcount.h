@@ -5,6 +5,7 @@
 #define CB_OPCOUNT_H
 
 #include "harness/counter.h"
+#include "harness/table.h"
 #include "kernels/kernel.h"
 
 struct cb_operations {
@@ -21,5 +22,9 @@ extern const char *const cb_stage_name[STAGES];
  * was linked without the counter. */
 enum cb_status cb_operations_count(const struct cb_variant *variant,
                                    struct cb_operations *operations);
+
+/* The variant's counts as rows of a table with CB_OPS_COLUMNS, one a stage. */
+#define CB_OPS_COLUMNS "model,storage,stage,mul,add,div,sqrt"
+enum cb_status cb_operations_table(struct cb_table *table, const struct cb_variant *variant);
 
 #endif
