@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "harness/results.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,23 @@ void cb_results_free(struct cb_results *r) {
   free(r->crossings);
   free(r->convergences);
   *r = (struct cb_results){0};
+}
+
+struct cb_row cb_row_unmeasured(const char *figure, const char *variant,
+                                const struct cb_mesh *mesh) {
+  struct cb_row row = {.figure = figure,
+                       .tetrahedra = mesh->tets,
+                       .nodes = mesh->nodes,
+                       .threads = 1,
+                       .step = {NAN, NAN, NAN},
+                       .bytes_per_tetrahedron = NAN,
+                       .setup_s = NAN,
+                       .update_s = NAN,
+                       .solve_s = NAN,
+                       .product_s = NAN,
+                       .scatter = NAN};
+  snprintf(row.variant, sizeof row.variant, "%s", variant);
+  return row;
 }
 
 /* The array with room for one more item of that size, or NULL with the array

@@ -80,6 +80,10 @@ struct cb_results {
 enum cb_status cb_results_create(const char *directory, bool quick, struct cb_results *r);
 void cb_results_free(struct cb_results *r); /* zeroed is allowed */
 
+/* A row of one thread whose every number is NaN, 0 or "" but for these. */
+struct cb_row cb_row_unmeasured(const char *figure, const char *variant,
+                                const struct cb_mesh *mesh);
+
 /* Append a copy. CB_MEMORY. */
 enum cb_status cb_results_add_row(struct cb_results *r, const struct cb_row *row);
 /* The row and its samples: step, scatter, epochs and, unless it is a failure
