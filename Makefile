@@ -49,6 +49,15 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 # The lanes are shown to compile and to agree; making them fast comes later.
 $(BUILD)/tests/test_lanes: $(LANES)
 
+RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
+bench: $(BUILD)/corobench ## measure the figures and draw them (QUICK=1: in under a minute)
+	$(BUILD)/corobench bench $(if $(QUICK),--quick) --output results/latest
+	@plots/draw.sh results/latest
+
+plots: ## draw the figures again from stored results (RESULTS=DIR)
+	@plots/draw.sh $(RESULTS)
+.PHONY: bench plots
+
 clean:
 	rm -rf $(BUILD)
 

@@ -72,6 +72,10 @@ enum cb_status cb_bench_gate(struct cb_bench *b, const struct cb_variant *v, con
 
 /* ---- blocks ----------------------------------------------------------------- */
 
+/* Record a sentence for what kernels or reference returned, as they record none,
+ * and return it; what: the name of what failed. CB_OK is passed on. */
+enum cb_status cb_bench_explain(enum cb_status status, const char *what);
+
 /* A variant on the scene, ready to step. */
 struct cb_job {
   const struct cb_variant *variant;
@@ -88,24 +92,32 @@ enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_s
                              const struct cb_step_parameters *step, struct cb_job *job);
 void cb_job_free(struct cb_job *job); /* zeroed is allowed */
 
-/* Variants times iteration counts on one scene, all timed in the same rounds. */
-struct cb_block {
-  const char *figure;
+struct cb_block;
+
+/* Variants times iteration counts on one scene, all to be timed in the same
+ * rounds. Nothing is owned. */
+struct cb_block_plan {
+  const char *figure; /* string constant */
   const struct cb_bench_scene *scene;
-  size_t count_count;
+  size_t variant_count, count_count;
+  const struct cb_variant *const *variants;
   const size_t *iterations; /* [count_count] */
-  size_t job_count;
+  bool parts;               /* time update, solve and product as well; for one count */
+  double budget_s;
+  /* Called with what was timed; NULL: nothing. */
+  enum cb_status (*after)(struct cb_bench *b, const struct cb_block *block);
+};
+struct cb_block {
+  const struct cb_block_plan *plan;
+  size_t job_count; /* of the variants that passed the gate */
   struct cb_job *jobs;
   struct cb_samples samples; /* of subject job * count_count + count */
 };
 /* Time the variants that pass the gate for about budget_s, give every variant
- * its rows, with one iteration count also the parts of a step, call `after`
- * (NULL: nothing) on what was timed, and write the results. No variant: nothing. */
-enum cb_status
-cb_bench_block(struct cb_bench *b, const char *figure, const struct cb_bench_scene *scene,
-               size_t variant_count, const struct cb_variant *const *variants, size_t count_count,
-               const size_t *iterations, double budget_s,
-               enum cb_status (*after)(struct cb_bench *b, const struct cb_block *block));
+ * its rows, and write the results. */
+enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan);
+/* The samples of one job at one iteration count, [samples.rounds], s. */
+const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t count);
 /* Add the ratios of all jobs that the rule pairs: each frame by QR with the same
  * strain-displacement policy, each other policy of QR by qr-updated; same
  * storage and arithmetic. */
@@ -120,7 +132,7 @@ void cb_bench_print(FILE *stream, const char *title, struct cb_table *t);
 void cb_bench_step_cell(struct cb_table *t, const struct cb_row *row, double scale);
 /* A number, or "-" for NaN. */
 void cb_bench_number_cell(struct cb_table *t, double value);
-/* A cell "1.30 [1.28, 1.33]"; "never" stands for infinity. */
+/* A cell "1.30 [1.28, 1.33]"; "never" stands for infinity, "-" for NaN. */
 void cb_bench_interval_cell(struct cb_table *t, struct cb_interval interval);
 /* The row of that figure, variant, size and iteration count, or NULL. */
 const struct cb_row *cb_bench_row(const struct cb_results *r, const char *figure,

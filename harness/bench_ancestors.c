@@ -13,7 +13,7 @@
 #include "reference/ancestors.h"
 #include "reference/direct.h"
 
-enum { METHODS = 3, ROUNDS = 25, MIN_ROUNDS = 6 };
+enum { METHODS = 3, ROUNDS = 21, MIN_ROUNDS = 6 };
 static const char *const NAMES[METHODS] = {"linear/inverse", "linear/condensed", "linear/factored"};
 
 /* The stiffness matrix, and the methods made of it. */
@@ -74,20 +74,21 @@ static enum cb_status make_methods(const struct cb_bench_scene *scene, struct an
   return status;
 }
 
-/* op: the assembled linear operator, c = 1; keeps pointers into it. */
-static enum cb_status make(const struct cb_bench_scene *scene, const struct cb_operator *op,
+/* linear: assembled, c = 1; *a keeps pointers into it. */
+static enum cb_status make(const struct cb_bench_scene *scene, const struct cb_job *linear,
                            struct ancestors *a) {
   const size_t nodes = scene->mesh.nodes;
-  cb_operator_pattern(op, &a->row_start, &a->column);
+  cb_stepper_right_side(linear->stepper, linear->x, linear->v, NULL); /* fills the matrix */
+  cb_operator_pattern(linear->op, &a->row_start, &a->column);
   a->blocks = malloc(9 * sizeof *a->blocks * a->row_start[nodes]);
   a->surface = malloc(nodes * sizeof *a->surface);
   a->f = malloc(3 * nodes * sizeof *a->f);
   a->u = malloc(3 * nodes * sizeof *a->u);
   if (!a->blocks || !a->surface || !a->f || !a->u) return cb_fail_memory("the linear ancestors");
-  cb_operator_blocks(op, a->blocks);
+  cb_operator_blocks(linear->op, a->blocks);
   for (size_t i = 0; i < 3 * nodes; i++) a->f[i] = 1e-3 * sin((double)i); /* N */
   const enum cb_status status = cb_surface_nodes(&scene->mesh, a->surface, &a->surface_count);
-  return status ? status : make_methods(scene, a);
+  return cb_bench_explain(status ? status : make_methods(scene, a), "a linear ancestor");
 }
 
 static void show(void *context, double share, const char *subject) {
@@ -125,16 +126,17 @@ static enum cb_status measure(struct cb_bench *b, const struct cb_bench_scene *s
 static enum cb_status run(struct cb_bench *b, double budget_s) {
   const struct cb_variant *linear = cb_variant_find("linear/bcsr/f64");
   struct cb_bench_scene scene = {0};
-  struct cb_operator *op = NULL;
+  struct cb_job job = {0};
+  const struct cb_step_parameters unit = {.h = 1}; /* c = 1: K itself */
   struct ancestors a = {0};
   if (!linear) return cb_fail(CB_BROKEN, "linear/bcsr/f64 is not there to be factored");
   enum cb_status status = cb_bench_scene_grid(cb_bench_paper_cells, b->options->seed, &scene);
-  if (!status) status = cb_operator_create(linear, &scene.mesh, &scene.material, 1, &op);
-  if (!status) status = make(&scene, op, &a);
+  if (!status) status = cb_job_create(linear, &scene, &unit, &job);
+  if (!status) status = make(&scene, &job, &a);
   if (!status) status = measure(b, &scene, &a, budget_s);
   if (!status) status = cb_results_write(&b->results);
   free_ancestors(&a);
-  cb_operator_free(op);
+  cb_job_free(&job);
   cb_bench_scene_free(&scene);
   return status;
 }

@@ -10,8 +10,8 @@
 #include "harness/error.h"
 #include "harness/progress.h"
 
-/* 25 rounds give the median an interval from the 8th to the 18th sample. */
-enum { ROUNDS = 25, MIN_ROUNDS = 6, PART_ROUNDS = 7, PARTS = 3 };
+/* 21 rounds give the median an interval from the 6th to the 16th sample. */
+enum { ROUNDS = 21, MIN_ROUNDS = 6, PART_ROUNDS = 7, PARTS = 3 };
 static const double MIN_EPOCH = 2e-3; /* s: the clock's resolution is then 1e-4 of it or better */
 /* Share of the budget for whole steps; the parts get what is left. */
 static const double STEP_SHARE = 0.8;
@@ -20,8 +20,8 @@ static struct cb_row row_of(const struct cb_block *block, const struct cb_varian
                             size_t count) {
   char name[CB_NAME];
   cb_variant_name(v, name);
-  struct cb_row row = cb_row_unmeasured(block->figure, name, &block->scene->mesh);
-  row.iterations = block->iterations[count];
+  struct cb_row row = cb_row_unmeasured(block->plan->figure, name, &block->plan->scene->mesh);
+  row.iterations = block->plan->iterations[count];
   return row;
 }
 
@@ -29,7 +29,7 @@ static struct cb_row row_of(const struct cb_block *block, const struct cb_varian
 static enum cb_status refuse(struct cb_bench *b, const struct cb_block *block,
                              const struct cb_variant *v, const char *reason) {
   enum cb_status status = CB_OK;
-  for (size_t c = 0; !status && c < block->count_count; c++) {
+  for (size_t c = 0; !status && c < block->plan->count_count; c++) {
     struct cb_row row = row_of(block, v, c);
     snprintf(row.status, sizeof row.status, "failed: %s", reason);
     status = cb_results_add_row(&b->results, &row);
@@ -51,7 +51,7 @@ static enum cb_status admit(struct cb_bench *b, struct cb_block *block,
   if (status) return status;
   if (cb_interrupted()) return cb_fail(CB_INTERRUPTED, "interrupted before a measurement");
   if (reason[0]) return refuse(b, block, v, reason);
-  status = cb_job_create(v, block->scene, &cb_bench_step, &block->jobs[block->job_count]);
+  status = cb_job_create(v, block->plan->scene, &cb_bench_step, &block->jobs[block->job_count]);
   if (!status) block->job_count++;
   return status;
 }
@@ -112,8 +112,8 @@ struct watch {
 static void show(void *context, double share, const char *subject) {
   const struct watch *watch = context;
   char what[CB_NAME + 64];
-  snprintf(what, sizeof what, "%s, %zu tetrahedra: %s", watch->block->figure,
-           watch->block->scene->mesh.tets, subject);
+  snprintf(what, sizeof what, "%s, %zu tetrahedra: %s", watch->block->plan->figure,
+           watch->block->plan->scene->mesh.tets, subject);
   cb_progress(watch->b->done_s + watch->first_s + share * watch->budget_s, what);
 }
 
@@ -135,13 +135,13 @@ static enum cb_status time_works(const struct cb_bench *b, struct watch *watch, 
 
 static enum cb_status time_steps(const struct cb_bench *b, struct cb_block *block,
                                  struct watch *watch) {
-  const size_t count = block->job_count * block->count_count;
+  const size_t count = block->job_count * block->plan->count_count;
   struct work *works = malloc(count * sizeof *works);
   struct cb_subject *subjects = malloc(count * sizeof *subjects);
   enum cb_status status = works && subjects ? CB_OK : cb_fail_memory("the measurement");
   for (size_t i = 0; !status && i < count; i++) {
-    struct cb_job *job = &block->jobs[i / block->count_count];
-    works[i] = (struct work){job, block->iterations[i % block->count_count]};
+    struct cb_job *job = &block->jobs[i / block->plan->count_count];
+    works[i] = (struct work){job, block->plan->iterations[i % block->plan->count_count]};
     subjects[i] = (struct cb_subject){job->name, restore, run_steps, &works[i]};
   }
   if (!status) status = time_works(b, watch, count, subjects, ROUNDS, &block->samples);
@@ -158,7 +158,7 @@ static enum cb_status time_parts(const struct cb_bench *b, const struct cb_block
   enum cb_status status = works && subjects ? CB_OK : cb_fail_memory("the measurement");
   for (size_t i = 0; !status && i < block->job_count; i++) {
     const char *name = block->jobs[i].name;
-    works[i] = (struct work){&block->jobs[i], block->iterations[0]};
+    works[i] = (struct work){&block->jobs[i], block->plan->iterations[0]};
     subjects[PARTS * i] = (struct cb_subject){name, restore, run_update, &works[i]};
     subjects[PARTS * i + 1] = (struct cb_subject){name, restore_right_side, run_solve, &works[i]};
     subjects[PARTS * i + 2] = (struct cb_subject){name, restore_right_side, run_product, &works[i]};
@@ -181,7 +181,7 @@ static enum cb_status median_of(const struct cb_samples *samples, size_t subject
 
 /* After its steps a job must still be somewhere. */
 static enum cb_status find_lost(struct cb_block *block) {
-  const size_t nodes = block->scene->mesh.nodes;
+  const size_t nodes = block->plan->scene->mesh.nodes;
   double *x = malloc(3 * nodes * sizeof *x);
   if (!x) return cb_fail_memory("the check of the state");
   for (size_t j = 0; j < block->job_count; j++) {
@@ -196,9 +196,9 @@ static enum cb_status find_lost(struct cb_block *block) {
 /* Row of subject i; parts may be NULL. */
 static enum cb_status add_row(struct cb_bench *b, const struct cb_block *block, size_t i,
                               const struct cb_samples *parts) {
-  const size_t j = i / block->count_count;
+  const size_t j = i / block->plan->count_count;
   const struct cb_job *job = &block->jobs[j];
-  struct cb_row row = row_of(block, job->variant, i % block->count_count);
+  struct cb_row row = row_of(block, job->variant, i % block->plan->count_count);
   row.bytes_per_tetrahedron = (double)cb_operator_bytes(job->op) / (double)row.tetrahedra;
   row.setup_s = job->setup_s;
   if (job->lost) {
@@ -213,33 +213,34 @@ static enum cb_status add_row(struct cb_bench *b, const struct cb_block *block, 
   return status;
 }
 
-static enum cb_status measure(struct cb_bench *b, struct cb_block *block, double budget_s) {
-  const bool with_parts = block->count_count == 1;
-  const double step_s = with_parts ? STEP_SHARE * budget_s : budget_s;
+static enum cb_status measure(struct cb_bench *b, struct cb_block *block) {
+  const double budget_s = block->plan->budget_s;
+  const double step_s = block->plan->parts ? STEP_SHARE * budget_s : budget_s;
   struct watch steps = {b, block, 0, step_s}, rest = {b, block, step_s, budget_s - step_s};
   struct cb_samples parts = {0};
   enum cb_status status = time_steps(b, block, &steps);
   if (!status) status = find_lost(block);
-  if (!status && with_parts) status = time_parts(b, block, &rest, &parts);
-  for (size_t i = 0; !status && i < block->job_count * block->count_count; i++)
-    status = add_row(b, block, i, with_parts ? &parts : NULL);
+  if (!status && block->plan->parts) status = time_parts(b, block, &rest, &parts);
+  for (size_t i = 0; !status && i < block->job_count * block->plan->count_count; i++)
+    status = add_row(b, block, i, block->plan->parts ? &parts : NULL);
   cb_samples_free(&parts);
   return status;
 }
 
-enum cb_status
-cb_bench_block(struct cb_bench *b, const char *figure, const struct cb_bench_scene *scene,
-               size_t variant_count, const struct cb_variant *const *variants, size_t count_count,
-               const size_t *iterations, double budget_s,
-               enum cb_status (*after)(struct cb_bench *b, const struct cb_block *block)) {
-  struct cb_block block = {
-      .figure = figure, .scene = scene, .count_count = count_count, .iterations = iterations};
-  block.jobs = calloc(variant_count + 1, sizeof *block.jobs);
+const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t count) {
+  const size_t subject = job * block->plan->count_count + count;
+  return block->samples.step_s + subject * block->samples.stride;
+}
+
+enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan) {
+  struct cb_block block = {.plan = plan};
+  block.jobs = calloc(plan->variant_count + 1, sizeof *block.jobs);
   enum cb_status status = block.jobs ? CB_OK : cb_fail_memory("the list of variants");
-  for (size_t i = 0; !status && i < variant_count; i++) status = admit(b, &block, variants[i]);
-  if (!status && block.job_count > 0) status = measure(b, &block, budget_s);
-  if (!status && block.job_count > 0 && after) status = after(b, &block);
+  for (size_t i = 0; !status && i < plan->variant_count; i++)
+    status = admit(b, &block, plan->variants[i]);
+  if (!status && block.job_count > 0) status = measure(b, &block);
+  if (!status && block.job_count > 0 && plan->after) status = plan->after(b, &block);
   free_block(&block);
-  b->done_s += budget_s;
+  b->done_s += plan->budget_s;
   return status ? status : cb_results_write(&b->results);
 }

@@ -41,7 +41,7 @@ static enum cb_status solve_directly(const struct cb_job *assembled,
   if (!status) status = cb_direct_solve(direct, b, dv);
   cb_direct_free(direct);
   free(blocks);
-  return status;
+  return cb_bench_explain(status, "the direct solution");
 }
 
 static double relative_error(size_t numbers, const double *dv, const double *exact) {

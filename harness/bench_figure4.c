@@ -31,7 +31,7 @@ static enum cb_status fit_job(const struct cb_block *block, size_t j, unsigned l
   const double *seconds[COUNTS];
   for (size_t c = 0; c < COUNTS; c++) {
     iterations[c] = (double)ITERATIONS[c];
-    seconds[c] = block->samples.step_s + (j * COUNTS + c) * block->samples.stride;
+    seconds[c] = cb_block_step_s(block, j, c);
   }
   const struct cb_series series = {COUNTS, block->samples.rounds, iterations, seconds};
   enum cb_status status = cb_line_fit(&series, &out->line);
@@ -41,7 +41,7 @@ static enum cb_status fit_job(const struct cb_block *block, size_t j, unsigned l
 
 static enum cb_status add_fit(struct cb_bench *b, const struct cb_block *block, size_t j,
                               const struct job_line *line, double *work) {
-  struct cb_fit fit = {.tetrahedra = block->scene->mesh.tets};
+  struct cb_fit fit = {.tetrahedra = block->plan->scene->mesh.tets};
   snprintf(fit.variant, CB_NAME, "%s", block->jobs[j].name);
   fit.fixed.value = line->line.intercept;
   for (size_t i = 0; i < CB_REPLICATES; i++) work[i] = line->drawn[i].intercept;
@@ -54,7 +54,8 @@ static enum cb_status add_fit(struct cb_bench *b, const struct cb_block *block, 
 
 static enum cb_status add_crossing(struct cb_bench *b, const struct cb_block *block, size_t first,
                                    size_t second, const struct job_line *lines, double *work) {
-  struct cb_crossing crossing = {.tetrahedra = block->scene->mesh.tets, .paper = PAPER_CROSSING};
+  struct cb_crossing crossing = {.tetrahedra = block->plan->scene->mesh.tets,
+                                 .paper = PAPER_CROSSING};
   snprintf(crossing.assembled, CB_NAME, "%s", block->jobs[first].name);
   snprintf(crossing.unassembled, CB_NAME, "%s", block->jobs[second].name);
   crossing.iterations.value = cb_line_crossing(lines[first].line, lines[second].line);
@@ -90,13 +91,19 @@ static enum cb_status add_lines(struct cb_bench *b, const struct cb_block *block
 
 static enum cb_status run(struct cb_bench *b, double budget_s) {
   const struct cb_variant **variants = NULL;
-  size_t count;
+  size_t count = 0;
   struct cb_bench_scene scene = {0};
   enum cb_status status = cb_bench_select(b, wanted, &variants, &count);
   if (!status) status = cb_bench_scene_grid(cb_bench_paper_cells, b->options->seed, &scene);
-  if (!status)
-    status =
-        cb_bench_block(b, "4", &scene, count, variants, COUNTS, ITERATIONS, budget_s, add_lines);
+  const struct cb_block_plan plan = {.figure = "4",
+                                     .scene = &scene,
+                                     .variant_count = count,
+                                     .variants = variants,
+                                     .count_count = COUNTS,
+                                     .iterations = ITERATIONS,
+                                     .budget_s = budget_s,
+                                     .after = add_lines};
+  if (!status) status = cb_bench_block(b, &plan);
   cb_bench_scene_free(&scene);
   free(variants);
   return status;

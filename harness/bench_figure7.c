@@ -23,7 +23,7 @@ static const struct size {
 } SIZES[] = {{{5, 5, 2}, FIVE, 0.05},    {{7, 7, 7}, FIVE, 0.08},    {{7, 7, 7}, FIFTY, 0.10},
              {{10, 10, 10}, FIVE, 0.10}, {{15, 15, 15}, FIVE, 0.20}, {{22, 22, 22}, FIVE, 0.47}};
 
-enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
+enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES, PAPER = 1 };
 
 static bool ends_with(const char *text, const char *end) {
   const size_t length = strlen(text), tail = strlen(end);
@@ -62,9 +62,16 @@ static enum cb_status run_size(struct cb_bench *b, const struct size *size, size
   if (status) return status;
   for (int s = 0; !status && s < CB_STORAGES; s++) {
     const size_t chosen = of_storage(s, count, variants, list);
-    if (chosen > 0)
-      status = cb_bench_block(b, "7", &scene, chosen, list, 1, size->iterations,
-                              budget_s / (double)storages, cb_block_ratios);
+    const struct cb_block_plan plan = {.figure = "7",
+                                       .scene = &scene,
+                                       .variant_count = chosen,
+                                       .variants = list,
+                                       .count_count = 1,
+                                       .iterations = size->iterations,
+                                       .parts = size == &SIZES[PAPER],
+                                       .budget_s = budget_s / (double)storages,
+                                       .after = cb_block_ratios};
+    if (chosen > 0) status = cb_bench_block(b, &plan);
   }
   cb_bench_scene_free(&scene);
   return status;
@@ -120,7 +127,7 @@ static void print_parts(const struct cb_results *r, const char *storage, FILE *s
   for (size_t i = 0; t && i < r->row_count; i++) {
     const struct cb_row *row = &r->rows[i];
     if (strcmp(row->figure, "7") != 0 || strcmp(storage_of(row->variant), storage) != 0 ||
-        row->iterations != FEW || row->tetrahedra != tetrahedra(&SIZES[1]))
+        row->iterations != FEW || row->tetrahedra != tetrahedra(&SIZES[PAPER]))
       continue;
     model_cell(t, row->variant);
     const double parts[] = {row->update_s, row->solve_s, row->product_s, row->setup_s};
@@ -128,7 +135,7 @@ static void print_parts(const struct cb_results *r, const char *storage, FILE *s
   }
   char title[160];
   snprintf(title, sizeof title, "The parts of a step, %s, %zu tetrahedra, %d iterations",
-           storage + 1, tetrahedra(&SIZES[1]), FEW);
+           storage + 1, tetrahedra(&SIZES[PAPER]), FEW);
   cb_bench_print(stream, title, t);
 }
 
@@ -147,7 +154,7 @@ static struct cb_interval find_ratio(const struct cb_results *r, const struct cb
 static void print_ratios(const struct cb_results *r, const char *storage, FILE *stream) {
   struct cb_table *t =
       cb_table_create("time_of,by_that_of,3430_tets,106480_tets,3430_tets_50_iterations,paper");
-  const size_t paper = tetrahedra(&SIZES[1]), large = tetrahedra(&SIZES[SIZE_COUNT - 1]);
+  const size_t paper = tetrahedra(&SIZES[PAPER]), large = tetrahedra(&SIZES[SIZE_COUNT - 1]);
   for (size_t i = 0; t && i < r->ratio_count; i++) {
     const struct cb_ratio *ratio = &r->ratios[i];
     if (strcmp(ratio->figure, "7") != 0 || strcmp(storage_of(ratio->numerator), storage) != 0 ||

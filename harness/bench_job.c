@@ -21,6 +21,16 @@ static enum cb_status allocate_vectors(size_t nodes, struct cb_job *job) {
   return cb_fail_memory("the node vectors");
 }
 
+enum cb_status cb_bench_explain(enum cb_status status, const char *what) {
+  switch (status) {
+  case CB_OK: return CB_OK;
+  case CB_MEMORY: return cb_fail_memory(what);
+  case CB_NUMERIC:
+    return cb_fail(status, "%s: the matrix is not positive definite; is the mesh held?", what);
+  default: return cb_fail(status, "%s does not take this mesh or material", what);
+  }
+}
+
 enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_scene *scene,
                              const struct cb_step_parameters *step, struct cb_job *job) {
   struct cb_job made = {.variant = v};
@@ -30,6 +40,7 @@ enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_s
       cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(step), &made.op);
   if (!status) status = cb_stepper_create(made.op, step, scene->mass, scene->fixed, &made.stepper);
   made.setup_s = cb_timer_now() - begin;
+  status = cb_bench_explain(status, made.name);
   if (!status) status = allocate_vectors(scene->mesh.nodes, &made);
   if (status) {
     cb_job_free(&made);

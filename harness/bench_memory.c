@@ -13,9 +13,9 @@ static enum cb_status add_row(struct cb_bench *b, const struct cb_bench_scene *s
   struct cb_operator *op;
   enum cb_status status =
       cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(&cb_bench_step), &op);
-  if (status) return status;
   char name[CB_NAME];
   cb_variant_name(v, name);
+  if (status) return cb_bench_explain(status, name);
   struct cb_row row = cb_row_unmeasured("memory", name, &scene->mesh);
   row.bytes_per_tetrahedron = (double)cb_operator_bytes(op) / (double)scene->mesh.tets;
   snprintf(row.status, sizeof row.status, "ok");

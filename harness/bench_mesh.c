@@ -48,8 +48,16 @@ static enum cb_status run(struct cb_bench *b, double budget_s) {
   if (!status) qsort(variants, count, sizeof *variants, by_storage);
   for (size_t i = 0, n; !status && i < count; i += n) {
     n = fitting(b, &scene.mesh, i, count, variants);
-    status = cb_bench_block(b, "mesh", &scene, n, variants + i, 1, ITERATIONS,
-                            budget_s * (double)n / (double)count, cb_block_ratios);
+    const struct cb_block_plan plan = {.figure = "mesh",
+                                       .scene = &scene,
+                                       .variant_count = n,
+                                       .variants = variants + i,
+                                       .count_count = 1,
+                                       .iterations = ITERATIONS,
+                                       .parts = true,
+                                       .budget_s = budget_s * (double)n / (double)count,
+                                       .after = cb_block_ratios};
+    status = cb_bench_block(b, &plan);
   }
   cb_bench_scene_free(&scene);
   free(variants);

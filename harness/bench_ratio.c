@@ -35,18 +35,17 @@ static bool is_base(const struct cb_variant *v, const struct cb_variant *base) {
 static enum cb_status add_ratio(struct cb_bench *b, const struct cb_block *block, size_t v,
                                 size_t base, size_t count) {
   const struct cb_job *upper = &block->jobs[v], *lower = &block->jobs[base];
-  const struct cb_samples *s = &block->samples;
   const bool in_paper = starts_with(upper->variant->model->name, "polar-") &&
                         strcmp(lower->variant->model->name, "qr-updated") == 0;
-  struct cb_ratio ratio = {.figure = block->figure,
-                           .tetrahedra = block->scene->mesh.tets,
-                           .iterations = block->iterations[count],
+  struct cb_ratio ratio = {.figure = block->plan->figure,
+                           .tetrahedra = block->plan->scene->mesh.tets,
+                           .iterations = block->plan->iterations[count],
                            .paper = in_paper ? PAPER_POLAR_TO_QR : NAN};
   snprintf(ratio.numerator, CB_NAME, "%s", upper->name);
   snprintf(ratio.denominator, CB_NAME, "%s", lower->name);
   const enum cb_status status =
-      cb_ratio_interval(s->rounds, s->step_s + (v * block->count_count + count) * s->stride,
-                        s->step_s + (base * block->count_count + count) * s->stride, &ratio.ratio);
+      cb_ratio_interval(block->samples.rounds, cb_block_step_s(block, v, count),
+                        cb_block_step_s(block, base, count), &ratio.ratio);
   return status ? status : cb_results_add_ratio(&b->results, &ratio);
 }
 
@@ -56,7 +55,7 @@ enum cb_status cb_block_ratios(struct cb_bench *b, const struct cb_block *block)
     for (size_t base = 0; base < block->job_count; base++) {
       if (block->jobs[v].lost || block->jobs[base].lost) continue;
       if (!is_base(block->jobs[v].variant, block->jobs[base].variant)) continue;
-      for (size_t c = 0; !status && c < block->count_count; c++)
+      for (size_t c = 0; !status && c < block->plan->count_count; c++)
         status = add_ratio(b, block, v, base, c);
     }
   return status;

@@ -32,14 +32,25 @@ void cb_bench_number_cell(struct cb_table *t, double value) {
     cb_table_number(t, value);
 }
 
-void cb_bench_interval_cell(struct cb_table *t, struct cb_interval i) {
-  char text[96];
-  if (isnan(i.value))
+/* Three digits or more; at least two behind the point below ten. */
+static void print_number(double value, size_t size, char *text) {
+  if (isinf(value))
+    snprintf(text, size, "never");
+  else
+    snprintf(text, size, "%.*f", fabs(value) < 10 ? 2 : fabs(value) < 100 ? 1 : 0, value);
+}
+
+void cb_bench_interval_cell(struct cb_table *t, struct cb_interval interval) {
+  char text[120], value[32], low[32], high[32];
+  print_number(interval.value, sizeof value, value);
+  print_number(interval.low, sizeof low, low);
+  print_number(interval.high, sizeof high, high);
+  if (isnan(interval.value))
     snprintf(text, sizeof text, "-");
-  else if (isinf(i.value))
+  else if (isinf(interval.low))
     snprintf(text, sizeof text, "never");
   else
-    snprintf(text, sizeof text, "%.3g [%.3g, %.3g]", i.value, i.low, i.high);
+    snprintf(text, sizeof text, "%s [%s, %s]", value, low, high);
   cb_table_text(t, text);
 }
 

@@ -95,8 +95,8 @@ static enum cb_status fit_begin(const struct cb_series *s, double **work, size_t
 }
 
 enum cb_status cb_line_fit(const struct cb_series *series, struct cb_line *line) {
-  double *work;
-  size_t *picked;
+  double *work = NULL;
+  size_t *picked = NULL;
   const enum cb_status status = fit_begin(series, &work, &picked);
   if (status) return status;
   for (size_t r = 0; r < series->rounds; r++) picked[r] = r;
@@ -108,8 +108,8 @@ enum cb_status cb_line_fit(const struct cb_series *series, struct cb_line *line)
 
 enum cb_status cb_line_bootstrap(const struct cb_series *series, unsigned long seed,
                                  struct cb_line *lines) {
-  double *work;
-  size_t *picked;
+  double *work = NULL;
+  size_t *picked = NULL;
   const enum cb_status status = fit_begin(series, &work, &picked);
   if (status) return status;
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);

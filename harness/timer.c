@@ -40,7 +40,7 @@ static struct epoch run_epoch(const struct cb_subject *s, size_t repeats, double
 /* Repeats that fill an epoch; the trials are the warm-up. */
 static size_t calibrate(const struct cb_subject *s, double epoch_s, double (*now)(void)) {
   size_t repeats = 1;
-  run_epoch(s, repeats, now);
+  if (run_epoch(s, repeats, now).wall > 2 * epoch_s) return repeats; /* warmer, still 1 */
   while (!cb_interrupted()) {
     const double lasted = run_epoch(s, repeats, now).wall;
     if (!(lasted < epoch_s) || repeats > SIZE_MAX / 64) break;

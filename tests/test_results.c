@@ -8,49 +8,19 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 #include <jansson.h>
 
 #include "harness/error.h"
 #include "harness/results.h"
+#include "tests/temporary.h"
 
 enum { ROUNDS = 7 };
-static const char *const files[] = {"bench.csv",  "samples.csv",      "ratios.csv",
-                                    "fits.csv",   "crossings.csv",    "convergence.csv",
-                                    "bench.json", "environment.json", "footer.txt"};
-enum { FILES = sizeof files / sizeof *files };
-
-static char directory[64];
-
-static int setup(void **state) {
-  (void)state;
-  strcpy(directory, "/tmp/corobench-results-XXXXXX");
-  return mkdtemp(directory) ? 0 : -1;
-}
-
-static void path_of(const char *name, char path[128]) {
-  snprintf(path, 128, "%s/%s", directory, name);
-}
-
-static int teardown(void **state) {
-  (void)state;
-  char path[128];
-  for (size_t i = 0; i < FILES; i++) {
-    path_of(files[i], path);
-    unlink(path);
-  }
-  return rmdir(directory); /* fails if anything else was left there */
-}
-
 /* Line `number` (from 0) of a file of the run. */
 static void read_line(const char *name, int number, char line[1024]) {
-  char path[128];
-  path_of(name, path);
-  FILE *f = fopen(path, "r");
+  FILE *f = fopen(temporary_path(name), "r");
   assert_non_null(f);
   for (int i = 0; i <= number; i++) assert_non_null(fgets(line, 1024, f));
   line[strcspn(line, "\n")] = 0;
@@ -81,7 +51,7 @@ static struct cb_row make_row(const char *variant) {
 
 static void make_run(struct cb_results *r, bool quick) {
   const struct cb_samples samples = make_samples();
-  assert_int_equal(cb_results_create(directory, quick, r), CB_OK);
+  assert_int_equal(cb_results_create(temporary, quick, r), CB_OK);
   struct cb_row row = make_row("m/ebe/f64");
   assert_int_equal(cb_results_add_measured(r, &row, &samples, 0), CB_OK);
   row = make_row("m/csr/f64");
@@ -133,11 +103,9 @@ static void test_samples_csv(void **state) {
 static void test_bench_json(void **state) {
   (void)state;
   struct cb_results r;
-  char path[128];
   make_run(&r, true);
   assert_int_equal(cb_results_write(&r), CB_OK);
-  path_of("bench.json", path);
-  json_t *root = json_load_file(path, 0, NULL);
+  json_t *root = json_load_file(temporary_path("bench.json"), 0, NULL);
   assert_non_null(root);
   const json_t *context = json_object_get(root, "context");
   assert_true(json_is_true(json_object_get(context, "quick")));
@@ -147,7 +115,7 @@ static void test_bench_json(void **state) {
   assert_int_equal(json_array_size(list), 2 * (ROUNDS + 1)); /* a failure has no samples */
   const json_t *sample = json_array_get(list, ROUNDS + 1), *median = json_array_get(list, ROUNDS);
   assert_string_equal(json_string_value(json_object_get(sample, "name")),
-                      "figure:4/m/csr/f64/tetrahedra:3430/iterations:5");
+                      "figure4/m/csr/f64/3430/5");
   assert_string_equal(json_string_value(json_object_get(sample, "run_type")), "iteration");
   assert_true(json_real_value(json_object_get(sample, "real_time")) == 1e9);
   assert_string_equal(json_string_value(json_object_get(median, "aggregate_name")), "median");
@@ -184,11 +152,28 @@ static void test_other_tables(void **state) {
   cb_results_free(&r);
 }
 
+static void test_every_file_is_there_and_whole(void **state) {
+  (void)state;
+  static const char *const files[] = {"bench.csv",  "samples.csv",      "ratios.csv",
+                                      "fits.csv",   "crossings.csv",    "convergence.csv",
+                                      "bench.json", "environment.json", "footer.txt"};
+  struct cb_results r;
+  char part[32];
+  make_run(&r, false);
+  assert_int_equal(cb_results_write(&r), CB_OK);
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    assert_int_equal(access(temporary_path(files[i]), R_OK), 0);
+    snprintf(part, sizeof part, "%s.part", files[i]);
+    assert_int_not_equal(access(temporary_path(part), F_OK), 0);
+  }
+  cb_results_free(&r);
+}
+
 /* More rows than the array's first sizes, each still itself. */
 static void test_arrays_grow(void **state) {
   (void)state;
   struct cb_results r;
-  assert_int_equal(cb_results_create(directory, false, &r), CB_OK);
+  assert_int_equal(cb_results_create(temporary, false, &r), CB_OK);
   for (size_t i = 0; i < 1000; i++) {
     const struct cb_ratio ratio = {.figure = "7", .tetrahedra = i};
     assert_int_equal(cb_results_add_ratio(&r, &ratio), CB_OK);
@@ -204,7 +189,7 @@ static void test_earlier_run_stays_until_the_first_write(void **state) {
   make_run(&r, true);
   assert_int_equal(cb_results_write(&r), CB_OK);
   cb_results_free(&r);
-  assert_int_equal(cb_results_create(directory, false, &r), CB_OK);
+  assert_int_equal(cb_results_create(temporary, false, &r), CB_OK);
   read_line("bench.csv", 3, line);
   assert_int_equal(cb_results_write(&r), CB_OK);
   read_line("footer.txt", 0, line);
@@ -215,26 +200,24 @@ static void test_earlier_run_stays_until_the_first_write(void **state) {
 static void test_place_that_cannot_be_written(void **state) {
   (void)state;
   struct cb_results r = {.row_count = 77};
-  char path[128];
-  path_of("footer.txt", path);
-  FILE *f = fopen(path, "w");
+  FILE *f = fopen(temporary_path("file"), "w");
   assert_non_null(f);
   fclose(f);
-  assert_int_equal(cb_results_create(path, false, &r), CB_IO);
+  assert_int_equal(cb_results_create(temporary_path("file"), false, &r), CB_IO);
   assert_int_equal(r.row_count, 77);
   assert_true(strlen(cb_error_message()) > 0);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(test_bench_csv, setup, teardown),
-      cmocka_unit_test_setup_teardown(test_samples_csv, setup, teardown),
-      cmocka_unit_test_setup_teardown(test_bench_json, setup, teardown),
-      cmocka_unit_test_setup_teardown(test_other_tables, setup, teardown),
-      cmocka_unit_test_setup_teardown(test_arrays_grow, setup, teardown),
-      cmocka_unit_test_setup_teardown(test_earlier_run_stays_until_the_first_write, setup,
-                                      teardown),
-      cmocka_unit_test_setup_teardown(test_place_that_cannot_be_written, setup, teardown),
+      cmocka_unit_test(test_bench_csv),
+      cmocka_unit_test(test_samples_csv),
+      cmocka_unit_test(test_bench_json),
+      cmocka_unit_test(test_other_tables),
+      cmocka_unit_test(test_every_file_is_there_and_whole),
+      cmocka_unit_test(test_arrays_grow),
+      cmocka_unit_test(test_earlier_run_stays_until_the_first_write),
+      cmocka_unit_test(test_place_that_cannot_be_written),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }
