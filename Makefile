@@ -54,7 +54,16 @@ sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour
 	  SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' test
 
 verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
-	@$(BUILD)/corobench verify
+	@$(BUILD)/corobench verify --output results/latest
+	@plots/draw.sh results/latest
+
+bench: all ## measure the figures and draw them (QUICK=1: in under a minute)
+	@$(BUILD)/corobench bench $(if $(QUICK),--quick) --output results/latest
+	@plots/draw.sh results/latest
+
+RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
+plots: ## draw the figures again from stored results, without measuring (RESULTS=DIR)
+	@plots/draw.sh $(RESULTS)
 
 help: ## this list
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
@@ -88,6 +97,7 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 # The lanes are shown to compile and to agree; making them fast comes later.
 $(BUILD)/tests/test_lanes: $(LANES)
 
+
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
 $(foreach goal,$(filter test sanitize verify bench plots,$(MAKECMDGOALS)), \
@@ -103,6 +113,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize verify help clean always
+.PHONY: all programs setup test sanitize verify bench plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -1,0 +1,35 @@
+#!/bin/sh
+# draw.sh DIR - draw every figure whose data are in DIR, and measure nothing.
+# Run from the root of the project.
+# SPDX-License-Identifier: BSD-3-Clause
+set -u
+dir=$1
+
+if ! command -v gnuplot >/dev/null; then
+  echo "plots: gnuplot is not installed; 'make setup' installs it" >&2
+  exit 2
+fi
+if [ ! -f "$dir/bench.csv" ] && [ ! -f "$dir/figure3.csv" ]; then
+  echo "plots: there are no results in $dir; 'make bench' measures some" >&2
+  exit 2
+fi
+
+# Is there a line in DIR/$1 that matches $2?
+has() { grep -qsE "$2" "$dir/$1"; }
+
+status=0
+draw() {
+  echo "drawing $1"
+  gnuplot -e "results='$dir'" "plots/$1.gp" 2>"$dir/gnuplot.log" || status=2
+  grep -v 'no valid points' "$dir/gnuplot.log" >&2 # a filter that left out all
+  rm -f "$dir/gnuplot.log"
+}
+
+# Figures of an earlier run must not stand beside the data of this one.
+rm -f "$dir"/figure*.svg "$dir"/figure*.png "$dir"/convergence.svg "$dir"/convergence.png
+has figure3.csv '^[^,]+,[0-9]' && draw figure3
+has fits.csv '^[^,]+,[0-9]' && draw figure4
+has bench.csv '^7,.*,[0-9.e+-]+,(ok|unstable),' && draw figure7
+has convergence.csv '^[^,]+,[0-9]' && draw convergence
+find "$dir" -maxdepth 1 \( -name "*.svg" -o -name "*.png" \) | sort
+exit $status
