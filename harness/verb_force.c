@@ -58,6 +58,16 @@ static enum cb_status check_complete(const struct request *r, const struct cb_op
   return cb_fail(CB_INPUT, "force needs %s; see 'corobench force --help'", missing);
 }
 
+static enum cb_status the_material(const struct request *r, struct cb_material *material) {
+  const double any_density = 1; /* the elastic force does not depend on it */
+  if (cb_material_isotropic(r->young, r->poisson, any_density, material) == CB_OK) return CB_OK;
+  return cb_fail(
+      CB_INPUT,
+      "--young %g with --poisson %g is no isotropic material: Young's modulus must be at "
+      "least 0 and Poisson's ratio inside (-1, 1/2)",
+      r->young, r->poisson);
+}
+
 static enum cb_status the_variant(const struct cb_options *o, const struct cb_variant **chosen) {
   const struct cb_variant *first = NULL, *second = NULL;
   for (const struct cb_variant *v = cb_variants(NULL); v->model && !second; v++) {
@@ -94,9 +104,13 @@ static enum cb_status evaluate(const struct cb_variant *variant, const struct cb
   const struct cb_arithmetic *arithmetic = variant->arithmetic;
   struct cb_operator *op = NULL;
   void *x = vector_create(arithmetic, mesh->nodes), *f = vector_create(arithmetic, mesh->nodes);
-  enum cb_status status = x && f ? cb_operator_create(variant, mesh, material, 1, &op)
-                                 : cb_fail_memory("the node vectors");
-  if (status != CB_OK) goto done;
+  enum cb_status status = x && f ? cb_operator_create(variant, mesh, material, 1, &op) : CB_MEMORY;
+  if (status != CB_OK) {
+    status = status == CB_MEMORY ? cb_fail_memory("the element arrays")
+                                 : cb_fail(status, "this variant is not offered for this material "
+                                                   "or the mesh has no tetrahedron");
+    goto done;
+  }
   arithmetic->from_double(mesh->nodes, xyz, x);
   cb_operator_update(op, x, NULL, 1, f);
   arithmetic->to_double(mesh->nodes, f, xyz);
@@ -146,7 +160,7 @@ static enum cb_status run(int argc, char **argv) {
                                            doc, own_options, parse, &r, &o);
   if (status != CB_OK || (status = check_complete(&r, &o)) != CB_OK ||
       (status = the_variant(&o, &variant)) != CB_OK ||
-      (status = cb_material_isotropic(r.young, r.poisson, 1, &material)) != CB_OK ||
+      (status = the_material(&r, &material)) != CB_OK ||
       (status = cb_mesh_read(o.mesh_path, &mesh, &numbers)) != CB_OK)
     goto done;
   xyz = calloc(mesh.nodes, 3 * sizeof *xyz);

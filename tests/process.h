@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/temporary.h"
+
 struct process {
   int exit_status; /* -1: ended by a signal or could not be started */
   char *out, *err; /* what it wrote, NUL-terminated; "" where nothing */
@@ -32,17 +34,14 @@ static inline char *read_text(const char *path) {
 }
 
 /* Run argv (NULL-terminated, argv[0] looked up in PATH) with that environment,
- * standard input empty, standard output to out_path (NULL: kept) and wait.
- * directory: where its words are kept meanwhile. */
+ * standard input empty, standard output to out_path (NULL: kept) and wait. */
 static inline struct process process_run(const char *const *argv, char *const *environment,
-                                         const char *directory, const char *out_path) {
+                                         const char *out_path) {
   struct process p = {.exit_status = -1};
   posix_spawn_file_actions_t files;
-  char out[4096], err[4096];
+  const char *out = temporary_path("stdout"), *err = temporary_path("stderr");
   pid_t pid;
   int status;
-  snprintf(out, sizeof out, "%s/stdout", directory);
-  snprintf(err, sizeof err, "%s/stderr", directory);
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&files, 1, out_path ? out_path : out,
@@ -74,11 +73,10 @@ static inline void find_program(const char *test_program) {
 }
 
 /* corobench with those words (NULL-terminated, at most 30). */
-static inline struct process run_words(const char *directory, const char *out_path,
-                                       const char *const *words) {
+static inline struct process run_words(const char *out_path, const char *const *words) {
   const char *argv[32] = {program};
   for (size_t i = 0; words[i]; i++) argv[i + 1] = words[i];
-  return process_run(argv, environ, directory, out_path);
+  return process_run(argv, environ, out_path);
 }
 
 /* Exit status 2 and one line on standard error that says so. */

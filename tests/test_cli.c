@@ -13,23 +13,11 @@
 #include "kernels/kernel.h"
 #include "tests/process.h"
 
-static char directory[] = "/tmp/corobench-test-XXXXXX";
-
-#define RUN(...) run_words(directory, NULL, (const char *const[]){__VA_ARGS__, NULL})
-
-static int set_up(void **state) {
-  (void)state;
-  return mkdtemp(directory) ? 0 : -1;
-}
-
-static int tear_down(void **state) {
-  (void)state;
-  return rmdir(directory);
-}
+#define RUN(...) run_words(NULL, (const char *const[]){__VA_ARGS__, NULL})
 
 static void test_help(void **state) {
   (void)state;
-  const char *const verbs[] = {"list", "force"};
+  const char *const verbs[] = {"list", "ops", "force"};
   struct process all = RUN("--help");
   assert_int_equal(all.exit_status, 0);
   assert_string_equal(all.err, "");
@@ -59,7 +47,7 @@ static void test_version(void **state) {
 
 static void test_no_verb(void **state) {
   (void)state;
-  struct process p = run_words(directory, NULL, (const char *const[]){NULL});
+  struct process p = run_words(NULL, (const char *const[]){NULL});
   assert_int_equal(p.exit_status, 2);
   assert_non_null(strstr(p.err, "force"));
   assert_string_equal(p.out, "");
@@ -81,7 +69,7 @@ static void test_full_disk(void **state) {
   const char *const calls[][5] = {{"--help"}, {"--version"}, {"list"}, {"list", "--help"}};
   if (access("/dev/full", W_OK) != 0) skip();
   for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
-    struct process p = run_words(directory, "/dev/full", calls[i]);
+    struct process p = run_words("/dev/full", calls[i]);
     assert_one_sentence(&p, "cannot write");
     process_free(&p);
   }
@@ -143,5 +131,5 @@ int main(int argc, char **argv) {
   };
   (void)argc;
   find_program(argv[0]);
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }

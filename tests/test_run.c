@@ -12,32 +12,19 @@
 
 #include "tests/process.h"
 
-static char directory[] = "/tmp/corobench-test-XXXXXX";
-
-static int set_up(void **state) {
-  (void)state;
-  return mkdtemp(directory) ? 0 : -1;
-}
-
-static int tear_down(void **state) {
-  (void)state;
-  return rmdir(directory);
-}
-
 /* The total and exit status of tests/run over one or two programs. */
 static void totals(const char *script, const char *other, const char *last_line, int exit_status) {
   const char *const scripts[] = {script, other};
-  char paths[2][64];
+  const char *const paths[] = {temporary_path("program0"), temporary_path("program1")};
   const char *argv[] = {"tests/run", paths[0], other ? paths[1] : NULL, NULL};
   for (size_t i = 0; i < 2 && scripts[i]; i++) {
-    snprintf(paths[i], sizeof paths[i], "%s/program%zu", directory, i);
     FILE *file = fopen(paths[i], "w");
     assert_non_null(file);
     fprintf(file, "#!/bin/sh\n%s\n", scripts[i]);
     assert_int_equal(fclose(file), 0);
     assert_int_equal(chmod(paths[i], 0700), 0);
   }
-  struct process p = process_run(argv, environ, directory, NULL);
+  struct process p = process_run(argv, environ, NULL);
   size_t length = strlen(p.out), wanted = strlen(last_line);
   assert_true(length > wanted);
   assert_string_equal(p.out + length - wanted, last_line);
@@ -83,5 +70,5 @@ int main(void) {
       cmocka_unit_test(test_passes),  cmocka_unit_test(test_failure), cmocka_unit_test(test_crash),
       cmocka_unit_test(test_silence), cmocka_unit_test(test_skipped),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }

@@ -12,18 +12,12 @@
 
 #include "tests/process.h"
 
-static char directory[] = "/tmp/corobench-test-XXXXXX";
 /* What stand-ins may be there; "installed" is made by apt-get install. */
 static const char *const names[] = {"cc",  "apt-get", "sudo", "id",        "gnuplot",
                                     "env", "mktemp",  "rm",   "installed", "log"};
 
-static void path_of(char path[64], const char *name) {
-  snprintf(path, 64, "%s/%s", directory, name);
-}
-
 static void stand_in(const char *name, const char *script) {
-  char path[64];
-  path_of(path, name);
+  const char *path = temporary_path(name);
   FILE *file = fopen(path, "w");
   assert_non_null(file);
   fprintf(file, "#!/bin/sh\n%s\n", script);
@@ -32,15 +26,13 @@ static void stand_in(const char *name, const char *script) {
 }
 
 static void stand_for(const char *name, const char *real) {
-  char path[64];
-  path_of(path, name);
-  assert_int_equal(symlink(real, path), 0);
+  assert_int_equal(symlink(real, temporary_path(name)), 0);
 }
 
+/* A system with a root shell, and a compiler that finds what is installed. */
 static int begin(void **state) {
   (void)state;
-  strcpy(directory + strlen(directory) - 6, "XXXXXX");
-  if (!mkdtemp(directory)) return -1;
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(temporary_path(names[i]));
   stand_for("env", "/usr/bin/env");
   stand_for("mktemp", "/usr/bin/mktemp");
   stand_for("rm", "/bin/rm");
@@ -49,36 +41,19 @@ static int begin(void **state) {
   return 0;
 }
 
-static int end(void **state) {
-  (void)state;
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    char path[64];
-    path_of(path, names[i]);
-    unlink(path);
-  }
-  return rmdir(directory);
-}
-
 static const char *const installs =
     "echo \"$*\" >>\"$PATH/log\"\n"
     "case $* in *install*) : >\"$PATH/installed\"; : >\"$PATH/gnuplot\"\n"
     "/bin/chmod +x \"$PATH/gnuplot\";; esac";
 
 static struct process setup(const char *also) {
-  char path[64] = "PATH=", log[64];
-  char *environment[] = {path, (char *)"CC=cc", NULL};
-  strcat(path, directory);
-  path_of(log, "log");
-  unlink(log);
+  char path[64] = "PATH=";
+  char *environment[] = {strcat(path, temporary), (char *)"CC=cc", NULL};
   return process_run((const char *const[]){"/bin/sh", "harness/setup.sh", also, NULL}, environment,
-                     directory, NULL);
+                     NULL);
 }
 
-static char *what_apt_did(void) {
-  char path[64];
-  path_of(path, "log");
-  return read_text(path);
-}
+static char *what_apt_did(void) { return read_text(temporary_path("log")); }
 
 static void test_nothing_missing(void **state) {
   (void)state;
@@ -167,7 +142,7 @@ static void test_still_missing(void **state) {
 }
 
 int main(void) {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+#define TEST(name) cmocka_unit_test_setup(name, begin)
   const struct CMUnitTest tests[] = {
       TEST(test_nothing_missing),
       TEST(test_everything_missing),
@@ -178,5 +153,5 @@ int main(void) {
       TEST(test_apt_fails),
       TEST(test_still_missing),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }
