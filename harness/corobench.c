@@ -10,7 +10,8 @@
 #include "harness/progress.h"
 #include "harness/verbs.h"
 
-static const struct cb_verb *const verbs[] = {&cb_verb_list, &cb_verb_ops, &cb_verb_force};
+static const struct cb_verb *const verbs[] = {&cb_verb_bench, &cb_verb_verify, &cb_verb_force,
+                                             &cb_verb_ops, &cb_verb_list};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static void print_help(FILE *stream) {
