@@ -122,7 +122,7 @@ static enum cb_status turned_block(const struct cb_variant *v, double *largest, 
   cb_probe_force(&probe, x, f);
   *largest = *virial = 0;
   for (size_t i = 0; i < 3 * mesh.nodes; i++) {
-    if (!(fabs(f[i]) <= *largest)) *largest = fabs(f[i]) / (edge * edge);
+    *largest = cb_worst(*largest, fabs(f[i]) / (edge * edge));
     *virial += x[i] * f[i] / (8 * edge * edge * edge);
   }
 done:
@@ -141,7 +141,7 @@ static enum cb_status claim_rotation(struct claimant *a) {
     if (strcmp(v->model->name, "linear") == 0) status = turned_block(v, &linear, &virial);
     if (!is_corotated(v->model)) continue;
     status = turned_block(v, &largest, &unused);
-    if (!(largest <= worst)) worst = largest;
+    worst = cb_worst(worst, largest);
     count++;
   }
   MEASURED(a->claim,
@@ -325,8 +325,7 @@ static enum cb_status flattened(const struct cb_variant *v, double height, doubl
   cb_probe_force(&probe, x, f);
   cb_probe_close(&probe);
   *force = 0;
-  for (int i = 0; i < 12; i++)
-    if (!(fabs(f[i]) <= *force)) *force = fabs(f[i]);
+  for (int i = 0; i < 12; i++) *force = cb_worst(*force, fabs(f[i]));
   return CB_OK;
 }
 

@@ -37,7 +37,7 @@ static double worst_difference(const struct cb_patches *p, const double *a, cons
     double d = 0, s = 0;
     for (size_t i = 3 * n * p->nodes; i < 3 * (n + 1) * p->nodes; i++)
       d += (a[i] - b[i]) * (a[i] - b[i]), s += b[i] * b[i];
-    if (!(sqrt(d / s) <= worst)) worst = sqrt(d / s);
+    worst = cb_worst(worst, sqrt(d / s));
   }
   return worst;
 }

@@ -34,6 +34,8 @@ double cb_law_limit(const struct cb_arithmetic *arithmetic) { return 1e6 * arith
 
 bool cb_law_kept(double value, double limit) { return value <= limit; }
 
+double cb_worst(double a, double b) { return isnan(a) || a > b ? a : b; }
+
 static double norm3(const double *a) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
 static size_t first(const struct session *s, size_t patch) { return 3 * patch * s->p->nodes; }
@@ -95,7 +97,7 @@ static enum cb_status measure_rotation(struct session *s) {
   memset(turned, 0, length * sizeof *turned);
   for (size_t n = 0; n < count; n++) {
     double rest = difference(s, n, s->g, turned, s->f);
-    if (!(rest <= s->value[n])) s->value[n] = rest;
+    s->value[n] = cb_worst(s->value[n], rest);
   }
 done:
   free(Q), free(q), free(t), free(b), free(turned);
@@ -198,7 +200,7 @@ static enum cb_status measure_dense(struct session *s, bool semidefinite) {
     for (size_t i = 0; i < d; i++) /* the quadratic form sees the symmetric part */
       for (size_t j = 0; j < i; j++) A[i * d + j] = (A[i * d + j] + A[j * d + i]) / 2;
     status = cb_oracle_eigenvalues(d, A, eigen);
-    s->value[n] = fmax(0, -eigen[0]) / eigen[d - 1];
+    s->value[n] = fmax(0, -eigen[0]) / fmax(-eigen[0], eigen[d - 1]);
   }
   free(K);
   return status;
@@ -223,7 +225,7 @@ static enum cb_status measure_probes(struct session *s, bool semidefinite) {
     double value =
         semidefinite ? fmax(0, -uKu / sqrt(uu * KuKu)) : fabs(uKw - wKu) / sqrt(ww * KuKu);
     if (isnan(uKu)) value = NAN; /* fmax would hide it */
-    if (!(value <= worst)) worst = value;
+    worst = cb_worst(worst, value);
   }
   s->value[0] = worst;
   free(w);
@@ -321,7 +323,7 @@ static enum cb_status measure(struct session *s, const struct cb_material *mater
 static struct cb_law_value summary(double *value, size_t count) {
   struct cb_law_value v = {0, 0};
   for (size_t n = 0; n < count; n++)
-    if (!(value[n] <= v.worst)) v.worst = value[n];
+    v.worst = cb_worst(v.worst, value[n]);
   if (isnan(v.worst)) return (struct cb_law_value){NAN, NAN};
   gsl_sort(value, 1, count);
   v.median = gsl_stats_median_from_sorted_data(value, 1, count);

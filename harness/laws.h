@@ -6,7 +6,7 @@
  *   energy         |closed-path work| / work of both signs
  *   order          |f(relabelled vertices) - relabelled f(x)| / |f(x)|
  *   symmetric      |K - K^T| / |K|
- *   semi-definite  most negative eigenvalue of K / largest one
+ *   semi-definite  most negative eigenvalue of K / largest in size
  *   tangent        |K + df/dx| / |df/dx|, differences in quad precision
  * Warm-started frames come to x from a near shape, as they do in a simulation.
  *
@@ -25,6 +25,8 @@ struct cb_law_value {
  * of the random elements; what breaks a law in fact does so by 1e-6 and more. */
 double cb_law_limit(const struct cb_arithmetic *arithmetic);
 bool cb_law_kept(double value, double limit);
+/* The larger one; NaN if either is, whichever comes first. */
+double cb_worst(double a, double b);
 
 /* values[CB_LAWS] of a variant for one material. Energy is measured on the
  * closed paths of the patches, everything else on x. On patches of more than

@@ -21,9 +21,7 @@ enum cb_status cb_verification_material(int which, struct cb_material *m) {
 }
 
 double cb_law_row_value(const struct cb_law_row *row) {
-  return row->mesh <= row->random.worst ? row->random.worst
-         : isnan(row->random.worst)     ? NAN
-                                        : row->mesh;
+  return cb_worst(row->random.worst, row->mesh);
 }
 
 struct samples {

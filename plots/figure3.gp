@@ -1,7 +1,8 @@
 # Figure 3: a tetrahedron under forces without net torque. How far does it turn,
 # and which torque do its own elastic forces have?
-# Reads figure3.csv (model,time_s,angle_rad,torque), footer.txt.
+# Reads figure3.csv (model,time_s,angle_rad,torque), verify-footer.txt.
 # SPDX-License-Identifier: BSD-3-Clause
+footer_file = "verify-footer.txt"
 load "plots/style.gp"
 width = 1200
 height = 560

@@ -4,7 +4,9 @@
 if (!exists("results")) results = "results/latest"
 in(name) = results . "/" . name
 quoted(name) = "'" . in(name) . "'" # for the shell
-footer = system("head -n 1 " . quoted("footer.txt") . " 2>/dev/null")
+# figure3.gp: what verify wrote; the others: what bench wrote.
+if (!exists("footer_file")) footer_file = "footer.txt"
+footer = system("head -n 1 " . quoted(footer_file) . " 2>/dev/null")
 
 set encoding utf8
 set datafile separator comma
