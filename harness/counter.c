@@ -35,6 +35,7 @@ bool cb_counter_works(void) {
   struct cb_counts before = total[current];
   a = a * b + b / a - b;
   __asm__ volatile("" ::: "memory"); /* the compiler does not know that it called us */
-  const struct cb_counts *now = &total[current];
-  return now->mul == before.mul + 1 && now->add == before.add + 2 && now->div == before.div + 1;
+  struct cb_counts now = total[current];
+  total[current] = before;
+  return now.mul == before.mul + 1 && now.add == before.add + 2 && now.div == before.div + 1;
 }

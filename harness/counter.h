@@ -18,7 +18,8 @@ void cb_counter_stage(int stage);
 void cb_counter_reset(void);
 /* counts[STAGES] since the last reset. */
 void cb_counter_read(struct cb_counts *counts);
-/* Are executed operations seen at all? False when linked without --wrap. */
+/* Are executed operations seen at all? False when linked without --wrap. Leaves
+ * the counts as they are. */
 bool cb_counter_works(void);
 
 #endif

@@ -74,6 +74,5 @@ INLINE int ANY(MASK m) {
 #define LIT(x) splat((S)(x))
 
 INLINE T ABS(T a) { return SELECT(a < LIT(0), -a, a); }
-INLINE T MAX(T a, T b) { return SELECT(a > b, a, b); }
 
 #endif

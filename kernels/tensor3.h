@@ -1,6 +1,5 @@
-/* tensor3.h - vectors and 3x3 matrices of T. Matrices are row-major T[9],
- * symmetric ones T[6] in Voigt order xx yy zz xy yz zx (tensor components, not
- * engineering shears). Outputs must not overlap inputs unless said.
+/* tensor3.h - vectors and 3x3 matrices of T, row-major T[9]. Outputs must not
+ * overlap inputs.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_TENSOR3_H
@@ -47,7 +46,7 @@ INLINE void multiply3_nt(const T *A, const T *B, T *C) {
     for (int j = 0; j < 3; j++) C[3 * i + j] = dot3(A + 3 * i, B + 3 * j);
 }
 
-/* C := R S R^T as a full symmetric matrix, S symmetric and full */
+/* C := R A R^T, A symmetric */
 INLINE void rotate3_symmetric(const T *R, const T *A, T *C) {
   T RA[9];
   multiply3(R, A, RA);
@@ -62,7 +61,7 @@ INLINE void cofactor3(const T *A, T *C) {
   cross3(A, A + 3, C + 6);
 }
 
-/* Full symmetric matrix from Voigt order, tensor components */
+/* A := symmetric matrix of v[6], Voigt order xx yy zz xy yz zx, tensor components */
 INLINE void full3(const T *v, T *A) {
   A[0] = v[0], A[4] = v[1], A[8] = v[2];
   A[1] = A[3] = v[3];

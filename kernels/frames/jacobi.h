@@ -6,11 +6,8 @@
 #ifndef CB_FRAME_JACOBI_H
 #define CB_FRAME_JACOBI_H
 
+#include "kernels/frames/iterations.h"
 #include "kernels/tensor3.h"
-
-/* Sweeps to rounding in double: convergence is quadratic, then cubic; 3 sweeps
- * leave 6e-6 in the worst of random matrices, 4 leave 1e-15. */
-#define JACOBI_SWEEPS 4
 
 /* c, s := the rotation that makes [c -s; s c]^T [p r; r q] [c -s; s c] diagonal,
  * by the smaller angle; c = 1, s = 0 when r = 0. */

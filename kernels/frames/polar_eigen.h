@@ -2,8 +2,8 @@
  * Source: Etzmuss, Keckeisen, Strasser 2003; Hauth & Strasser 2004, section 4.
  *         They form F S^-1 and divide by the smallest singular value; here the
  *         third axis is a cross product, which also keeps det R = +1.
- * Trade:  F^T F squares the condition, so the eigenvectors of a nearly flat
- *         element are less sharp than those of the SVD.
+ * Trade:  F^T F squares the condition: on a needle, stretched s_1 : s_2, the
+ *         error is s_1/s_2 times that of the SVD; flat elements are as sharp.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_FRAME_POLAR_EIGEN_H

@@ -12,20 +12,17 @@
 
 #include "kernels/frames/jacobi.h"
 
-/* Scaled iterations bring the singular values together, the others converge
- * quadratically. Measured by tests/test_frames.c. */
-#define HIGHAM_SCALED 4
-#define HIGHAM_PLAIN 3
-
-/* Q := orthogonal polar factor of F, a reflection where det F < 0.
+/* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns a
+ * number with the sign of det Q.
  * in   F[9]  row-major, 1
  * fail       rank F < 2: NaN in that lane */
-INLINE void orthogonal_higham(const T *F, T *Q) {
+INLINE T orthogonal_higham(const T *F, T *Q) {
+  T det = LIT(0);
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   for (int n = 0; n < HIGHAM_SCALED + HIGHAM_PLAIN; n++) {
     T C[9];
     cofactor3(Q, C);
-    T det = dot3(Q, C);
+    det = dot3(Q, C);
     /* A flat element has no volume: the smallest one with a normal stands in. */
     det = SELECT(det == LIT(0), LIT(1e-30), det);
     T keep = LIT(0.5), turn = LIT(0.5) / det;
@@ -35,21 +32,20 @@ INLINE void orthogonal_higham(const T *F, T *Q) {
         norm = norm + dot3(Q + 3 * i, Q + 3 * i);
         conorm = conorm + dot3(C + 3 * i, C + 3 * i);
       }
-      T g = SQRT(SQRT(conorm / (norm * det * det)));
+      T g = SQRT(SQRT(conorm / norm) / ABS(det)); /* det^2 would underflow in float */
       keep = keep * g;
       turn = turn / g;
     }
     for (int i = 0; i < 9; i++) Q[i] = keep * Q[i] + turn * C[i];
   }
+  return det;
 }
 
 /* R := nearest rotation to F (det R = +1). Where det F < 0 the direction of the
  * smallest singular value is turned round: R = Q (I - 2 v v^T), S v = s_min v. */
 INLINE void frame_polar_higham(const T *F, T *R) {
-  T Q[9], C[9];
-  orthogonal_higham(F, Q);
-  cofactor3(F, C);
-  MASK inverted = dot3(F, C) < LIT(0);
+  T Q[9];
+  MASK inverted = orthogonal_higham(F, Q) < LIT(0);
   for (int i = 0; i < 9; i++) R[i] = Q[i];
   if (ANY(inverted)) {
     T stretch[9], V[9], s[3], v[3], Qv[3];

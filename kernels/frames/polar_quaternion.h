@@ -11,9 +11,6 @@
 
 #include "kernels/frames/polar_higham.h"
 
-/* Each one divides the angle that is left by about three. */
-#define QUATERNION_ITERATIONS 4
-
 /* R := matrix of the unit quaternion q = (w, x, y, z). */
 INLINE void quaternion_matrix(const T *q, T *R) {
   T x2 = q[1] + q[1], y2 = q[2] + q[2], z2 = q[3] + q[3];
@@ -57,7 +54,7 @@ INLINE void frame_polar_quaternion(const T *F, T *q, T *R) {
     for (int i = 0; i < 4; i++) q[i] = SELECT(cold, start[i], q[i]);
   }
   quaternion_matrix(q, R);
-  for (int n = 0; n < QUATERNION_ITERATIONS; n++) {
+  for (int n = 0; n < QUATERNION_TURNS; n++) {
     T G[9], p[4]; /* G = F R^T; sum of r x a over columns = its axial vector */
     multiply3_nt(F, R, G);
     T half = LIT(0.5) / (ABS(G[0] + G[4] + G[8]) + LIT(1e-9));

@@ -25,7 +25,7 @@ INLINE void frame_pack(const struct cb_elements *E, int policy, int exact, int o
   deformation_gradient(policy, rest, e, F);
   FRAME_ROTATION(e, F, memory, R);
   STAGE(STAGE_FORCE);
-  corotated_stress(E->k, rest, ortho, R, F, stretch, P);
+  corotated_stress(E->k, rest, ortho, NO_FRAME ? NULL : R, F, stretch, P);
 }
 #endif
 
@@ -70,17 +70,16 @@ INLINE void world_stress(int exact, int frameless, const T *R, const T *P, T *M)
     rotate3_symmetric(R, P, M);
 }
 
-/* M := h s M + stress of the velocity gradient: force and product in one go. */
+/* M := -h s M - stress of the velocity gradient: force and product in one go. */
 INLINE void absorb(int ortho, T k, const T *rest, T h, const T *w, const T *ev, T *M) {
-  T scale = h * rest[REST_FORCE];
+  T scale = -(h * rest[REST_FORCE]);
   for (int i = 0; i < 9; i++) M[i] = scale * M[i];
   if (ev) {
     T H[9], N[9];
     gradient3(ev, w, H);
     stress(ortho, k, rest + REST_D, H, N);
-    for (int i = 0; i < 9; i++) M[i] = M[i] + N[i];
+    for (int i = 0; i < 9; i++) M[i] = M[i] - N[i];
   }
-  for (int i = 0; i < 9; i++) M[i] = -M[i];
 }
 
 INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T *b) {
@@ -93,19 +92,19 @@ INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T
   }
 }
 
-/* Frame, gradients and force of one pack. Isotropic: w are world gradients and
- * R is not needed afterwards; orthotropic: w are local gradients. */
+/* Frame, gradients and force of one pack. Isotropic or frameless: w are world
+ * gradients and R is not needed afterwards; orthotropic: w are local gradients. */
 INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
                            const T *rest, const T *e, const T *ev, T h, T *memory, T *R, T *w,
                            T *f) {
   T P[9], M[9], y[6], q[9], p[9];
   FRAME_PACK(E, policy, exact, ortho, rest, e, memory, R, P, y);
   STAGE(STAGE_B);
-  if (!ortho) {
+  if (!ortho || NO_FRAME) {
     world_gradients(policy, SPARSE, NO_FRAME, rest, e, R, w);
     STAGE(STAGE_FORCE);
     world_stress(exact, NO_FRAME, R, P, M);
-    absorb(0, E->k, rest, h, w, ev, M);
+    absorb(ortho, E->k, rest, h, w, ev, M);
     forces3(M, w, f);
     return;
   }
@@ -261,7 +260,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 
 /* ID: C stem of the model; NAME, SUMMARY, SOURCE: strings; AXES, MEMORY: see
  * struct cb_model; LAWS_ISO, LAWS_ORTHO: claimed laws. EXACT: P is not
- * symmetric. */
+ * symmetric, isotropic either. */
 #define COROTATED_MODEL(ID, NAME, SUMMARY, SOURCE, POLICY, AXES, MEMORY, EXACT, LAWS_ISO,          \
                         LAWS_ORTHO)                                                                \
   COROTATED(ID, POLICY, EXACT)                                                                     \

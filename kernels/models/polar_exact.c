@@ -7,7 +7,7 @@
 #include "kernels/models/strain.h"
 
 /* P := P - [w]x, (tr(S) I - S) w = axial(P S - S P), S = R^T F: then R P is the
- * gradient of W(S), by dR/dx = R [w]x of a variation of F. */
+ * gradient of W(S): w stands for how R turns with F. */
 INLINE void polar_gradient(const T *S_, T *P) {
   T A[9], G[9], C[9], w[3];
   multiply3(P, S_, A);
@@ -31,8 +31,9 @@ INLINE void polar_exact_pack(const struct cb_elements *E, int policy, int exact,
   frame_polar_higham(F, R);
   STAGE(STAGE_FORCE);
   corotated_stress(E->k, rest, ortho, R, F, stretch, P);
+  if (!ortho) return;
   for (int i = 0; i < 9; i += 4) stretch[i] = stretch[i] + LIT(1);
-  if (ortho) polar_gradient(stretch, P);
+  polar_gradient(stretch, P);
 }
 
 #define SPARSE 0

@@ -16,9 +16,13 @@ INLINE void deformation_gradient(int policy, const T *rest, const T *e, T *F) {
   multiply3_tn(scaled, rest + REST_G, F);
 }
 
-/* P := D : (sym(R^T F) - I), the local stress of every frame but qr. */
+/* P := D : (sym(R^T F) - I), the local stress of every frame but qr; R NULL: I.
+ * E[9] := R^T F - I. */
 INLINE void corotated_stress(T k, const T *rest, int ortho, const T *R, const T *F, T *E, T *P) {
-  multiply3_tn(R, F, E);
+  if (R)
+    multiply3_tn(R, F, E);
+  else
+    for (int i = 0; i < 9; i++) E[i] = F[i];
   for (int i = 0; i < 9; i += 4) E[i] = E[i] - LIT(1);
   stress(ortho, k, rest + REST_D, E, P);
 }

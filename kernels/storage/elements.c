@@ -155,7 +155,6 @@ static void fill_rest(const struct layout *L, const struct cb_mesh *mesh, struct
     for (size_t i = 0; i < E->rest_numbers; i++)
       LANE(E->rest[pack * E->rest_numbers + i], lane) = (S)r[i];
     for (size_t j = 0; j < 4; j++) E->tet[(pack * 4 + j) * LANES + lane] = mesh->tet[4 * t + j];
-    (void)lane;
   }
 }
 
