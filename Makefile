@@ -66,7 +66,7 @@ bench: all ## measure the figures and draw them (QUICK=1: in under a minute)
 	@plots/draw.sh results/latest
 
 RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
-plots: ## draw the figures again from stored results, without measuring (RESULTS=DIR)
+plots: | $(FIRST) ## draw the figures again from stored results, without measuring (RESULTS=DIR)
 	@plots/draw.sh $(RESULTS)
 
 help: ## this list
@@ -99,7 +99,6 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 	@echo 'LINK $@'
 	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
 $(BUILD)/tests/test_lanes: $(LANES)
-
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
