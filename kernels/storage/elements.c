@@ -195,7 +195,39 @@ void CB_NAME(cb_elements_free)(struct cb_elements *E) {
   free(E);
 }
 
-enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const struct cb_mesh *mesh,
+/* The matrix of the edges of a left-handed element has no nearest rotation worth
+ * the name (a regular one has many): there c and d change places. *copy := the
+ * tetrahedra, all right-handed, to be freed. */
+static enum cb_status upright(const struct cb_mesh *mesh, uint32_t **copy) {
+  uint32_t *tet = malloc(4 * mesh->tets * sizeof *tet);
+  if (!tet) return CB_MEMORY;
+  memcpy(tet, mesh->tet, 4 * mesh->tets * sizeof *tet);
+  for (size_t t = 0; t < mesh->tets; t++)
+    if (cb_mesh_six_volumes(mesh, t) < 0) {
+      tet[4 * t + 2] = mesh->tet[4 * t + 3];
+      tet[4 * t + 3] = mesh->tet[4 * t + 2];
+    }
+  *copy = tet;
+  return CB_OK;
+}
+
+static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh *mesh,
+                               struct cb_elements *E) {
+  E->tet = array(E, E->packs * 4 * LANES, sizeof *E->tet);
+  E->rest = array(E, E->packs * E->rest_numbers, sizeof(T));
+  E->memory = array(E, E->packs * E->memory_numbers, sizeof(T));
+  E->state = array(E, E->packs * E->state_numbers, sizeof(T));
+  if (!E->tet || !E->rest || !E->memory || !E->state) return CB_MEMORY;
+  if (v->model->node_frames) {
+    E->node_frame = array(E, 9 * E->nodes, sizeof(S));
+    E->node_sum = array(E, 9 * E->nodes, sizeof(S));
+    if (!E->node_frame || !E->node_sum) return CB_MEMORY;
+  }
+  bool assembled = v->storage == CB_CSR || v->storage == CB_BCSR;
+  return assembled ? assembled_arrays(v, mesh, E) : CB_OK;
+}
+
+enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const struct cb_mesh *given,
                                            const struct cb_material *material, double c,
                                            struct cb_elements **out) {
   struct layout L = {.model = v->model, .material = material, .c = (REAL)c};
@@ -204,36 +236,28 @@ enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const str
   L.sparse = v->model->axes == AXES_EDGES;
   REAL nu = (REAL)material->poisson;
   L.mu = L.orthotropic ? (REAL)material->D[21] : (REAL)material->young / (2 * (1 + nu));
+  struct cb_mesh mesh = *given;
+  uint32_t *turned = NULL;
   struct cb_elements *E = aligned_alloc(64, (sizeof *E + 63) / 64 * 64);
   if (!E) return CB_MEMORY;
   memset(E, 0, sizeof *E);
-  E->nodes = mesh->nodes, E->tets = mesh->tets;
-  E->packs = (mesh->tets + LANES - 1) / LANES;
+  E->nodes = mesh.nodes, E->tets = mesh.tets;
+  E->packs = (mesh.tets + LANES - 1) / LANES;
   E->k = splat(L.orthotropic ? (S)0 : (S)(2 * nu / (1 - 2 * nu)));
   E->rest_numbers = rest_numbers(&L);
   E->memory_numbers = v->model->memory_numbers;
   E->state_numbers = v->model->form[v->storage][L.orthotropic].state_numbers;
-  enum cb_status status = CB_MEMORY;
-  E->tet = array(E, E->packs * 4 * LANES, sizeof *E->tet);
-  E->rest = array(E, E->packs * E->rest_numbers, sizeof(T));
-  E->memory = array(E, E->packs * E->memory_numbers, sizeof(T));
-  E->state = array(E, E->packs * E->state_numbers, sizeof(T));
-  if (!E->tet || !E->rest || !E->memory || !E->state) goto done;
-  if (v->model->node_frames) {
-    E->node_frame = array(E, 9 * E->nodes, sizeof(S));
-    E->node_sum = array(E, 9 * E->nodes, sizeof(S));
-    if (!E->node_frame || !E->node_sum) goto done;
+  enum cb_status status = CB_OK;
+  if (v->model->axes == AXES_POLAR) status = upright(given, &turned);
+  if (turned) mesh.tet = turned;
+  if (!status) status = allocate(v, &mesh, E);
+  if (!status) {
+    fill_rest(&L, &mesh, E);
+    *out = E;
+    E = NULL;
   }
-  if (v->storage == CB_CSR || v->storage == CB_BCSR) {
-    status = assembled_arrays(v, mesh, E);
-    if (status) goto done;
-  }
-  fill_rest(&L, mesh, E);
-  *out = E;
-  E = NULL;
-  status = CB_OK;
-done:
   CB_NAME(cb_elements_free)(E);
+  free(turned);
   return status;
 }
 
