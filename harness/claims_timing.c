@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "harness/bench.h"
-#include "harness/claims.h"
+#include "harness/claim.h"
 #include "harness/error.h"
 
 enum { MOST = 8, COUNTS_MOST = 3 };
@@ -85,7 +85,8 @@ static enum cb_status line_of(const struct race *r, size_t variant, struct cb_li
   return cb_line_fit(&(struct cb_series){r->counts, r->samples.rounds, iterations, seconds}, line);
 }
 
-enum cb_status cb_claim_assembly(unsigned long seed, struct cb_claim *c) {
+enum cb_status cb_claim_assembly(struct cb_claimant *a) {
+  struct cb_claim *c = a->claim;
   static const char *const short_names[] = {"ebe-paper", "ebe", "csr", "bcsr"};
   struct race r = {.variants = 4,
                    .counts = 3,
@@ -95,33 +96,32 @@ enum cb_status cb_claim_assembly(unsigned long seed, struct cb_claim *c) {
   struct cb_line line[4];
   size_t near = 0;
   char where[96] = "";
-  enum cb_status status = race_run(&r, seed);
+  enum cb_status status = race_run(&r, a->seed);
   for (size_t i = 0; i < r.variants && !status; i++) status = line_of(&r, i, &line[i]);
   for (size_t i = 0; i < 4 && !status; i++) {
-    size_t assembled = 2 + i / 2, unassembled = i % 2, used = strlen(c->measured);
+    size_t assembled = 2 + i / 2, unassembled = i % 2;
     double crossing = cb_line_crossing(line[assembled], line[unassembled]);
-    snprintf(c->measured + used, sizeof c->measured - used, "%s%s against %s from %.0f iterations",
-             i ? "; " : "", short_names[assembled], short_names[unassembled], crossing);
+    MEASURED(c, "%s%s against %s from %.0f iterations", i ? "; " : "", short_names[assembled],
+             short_names[unassembled], crossing);
     if (!(crossing >= 35 && crossing <= 70)) continue;
-    used = strlen(where);
-    snprintf(where + used, sizeof where - used, "%s%s against %s", near ? ", " : "",
-             short_names[assembled], short_names[unassembled]);
+    cb_claim_say(where, sizeof where, "%s%s against %s", near ? ", " : "", short_names[assembled],
+                 short_names[unassembled]);
     near++;
   }
   if (!status && near == 4)
-    snprintf(c->verdict, sizeof c->verdict, "reproduced");
+    VERDICT(c, "reproduced");
   else if (near)
-    snprintf(c->verdict, sizeof c->verdict, "only for %s", where);
+    VERDICT(c, "only for %s", where);
   else
-    snprintf(c->verdict, sizeof c->verdict,
-             "not reproduced: the crossing is a property of two implementations");
+    VERDICT(c, "not reproduced: the crossing is a property of two implementations");
   race_free(&r);
   return status;
 }
 
 /* ---- C10: is QR 30 % faster per step? ------------------------------------------ */
 
-enum cb_status cb_claim_qr_speed(unsigned long seed, struct cb_claim *c) {
+enum cb_status cb_claim_qr_speed(struct cb_claimant *a) {
+  struct cb_claim *c = a->claim;
   static const char *const short_names[] = {"qr", "higham", "eigen", "quaternion", "svd"};
   struct race r = {.variants = 5,
                    .counts = 2,
@@ -131,30 +131,28 @@ enum cb_status cb_claim_qr_speed(unsigned long seed, struct cb_claim *c) {
                    .iterations = {5, 20}};
   double saved[5][2];
   size_t near = 0, more = 0, shrinks = 0;
-  enum cb_status status = race_run(&r, seed);
+  enum cb_status status = race_run(&r, a->seed);
   for (size_t i = 1; i < r.variants && !status; i++) {
     for (size_t k = 0; k < r.counts && !status; k++) {
       struct cb_interval ratio = {NAN, NAN, NAN};
       status = cb_ratio_interval(r.samples.rounds, times(&r, 0, k), times(&r, i, k), &ratio);
       saved[i][k] = 100 * (1 - ratio.value);
     }
-    size_t used = strlen(c->measured);
-    snprintf(c->measured + used, sizeof c->measured - used,
-             "%s%s: QR takes %.0f %% less time at 5 iterations, %.0f %% at 20", i > 1 ? "; " : "",
-             short_names[i], saved[i][0], saved[i][1]);
+    MEASURED(c, "%s%s: QR takes %.0f %% less time at 5 iterations, %.0f %% at 20",
+             i > 1 ? "; " : "", short_names[i], saved[i][0], saved[i][1]);
     if (i == 4) continue; /* the claim is about polar */
     near += saved[i][0] >= 20 && saved[i][0] <= 40;
     more += saved[i][0] > 40;
     shrinks += saved[i][1] < 0.8 * saved[i][0];
   }
-  snprintf(c->verdict, sizeof c->verdict, "%s%s",
-           near == 3   ? "about 30 %: reproduced"
-           : near      ? "about 30 % only for some polar algorithms"
-           : more == 3 ? "not reproduced: QR gains more"
-                       : "not reproduced",
-           shrinks == 3 ? "; that it stays so with more iterations is not reproduced"
-           : shrinks    ? "; with more iterations it shrinks for some"
-                        : "; it stays so with more iterations");
+  VERDICT(c, "%s%s",
+          near == 3   ? "about 30 %: reproduced"
+          : near      ? "about 30 % only for some polar algorithms"
+          : more == 3 ? "not reproduced: QR gains more"
+                      : "not reproduced",
+          shrinks == 3 ? "; that it stays so with more iterations is not reproduced"
+          : shrinks    ? "; with more iterations it shrinks for some"
+                       : "; it stays so with more iterations");
   race_free(&r);
   return status;
 }
