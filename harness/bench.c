@@ -8,6 +8,7 @@
 
 #include "harness/error.h"
 #include "harness/gate.h"
+#include "harness/progress.h"
 
 const struct cb_step_parameters cb_bench_step = {.h = 4e-4, .iterations = 5};
 
@@ -57,7 +58,9 @@ enum cb_status cb_bench_select(const struct cb_bench *b, bool (*wanted)(const st
 enum cb_status cb_bench_gate(struct cb_bench *b, const struct cb_variant *v, const char **reason) {
   struct cb_gate_result *result = &b->gates[v - cb_variants(NULL)];
   if (!result->known) {
-    char text[sizeof result->reason] = "no reason given";
+    char text[sizeof result->reason] = "no reason given", name[CB_NAME];
+    cb_variant_name(v, name);
+    cb_progress(b->done_s, name);
     const enum cb_status status = cb_gate(v, text);
     if (status && status != CB_BROKEN) return status;
     if (status) memcpy(result->reason, text, sizeof text);

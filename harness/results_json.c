@@ -25,37 +25,34 @@ static json_t *nanoseconds(double seconds) {
   return isfinite(seconds) ? json_real(1e9 * seconds) : json_null();
 }
 
-/* What a sample and a median have in common; suffix is that of the name. */
+/* What a sample and a median have in common; suffix is that of the name. There
+ * are thousands of samples: no member that is the same in all of them. */
 static json_t *benchmark_json(const struct cb_row *row, const char *suffix, const char *type,
                               double real_s, double cpu_s, size_t repeats) {
   char name[256];
   snprintf(name, sizeof name, "figure%s/%s/%zu/%zu%s", row->figure, row->variant, row->tetrahedra,
            row->iterations, suffix);
-  return json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:s}", "name", name, "run_type", type, "threads",
-                   (json_int_t)row->threads, "iterations", (json_int_t)repeats, "real_time",
-                   nanoseconds(real_s), "cpu_time", nanoseconds(cpu_s), "time_unit", "ns");
+  return json_pack("{s:s, s:s, s:I, s:o, s:o, s:s}", "name", name, "run_type", type, "iterations",
+                   (json_int_t)repeats, "real_time", nanoseconds(real_s), "cpu_time",
+                   nanoseconds(cpu_s), "time_unit", "ns");
 }
 
-/* o with the members of more; both are taken over, either may be NULL. */
-static json_t *joined(json_t *o, json_t *more) {
+static json_t *sample_json(const struct cb_results *r, const struct cb_sample *s) {
+  return benchmark_json(&r->rows[s->row], "", "iteration", s->step_s, s->cpu_s, s->repeats);
+}
+
+static json_t *median_json(const struct cb_results *r, size_t row, double cpu_s) {
+  const struct cb_row *measured = &r->rows[row];
+  json_t *o = benchmark_json(measured, "_median", "aggregate", measured->step.value, cpu_s,
+                             measured->epochs);
+  json_t *more = json_pack("{s:I, s:I, s:s, s:s}", "repetitions", (json_int_t)measured->epochs,
+                           "threads", (json_int_t)measured->threads, "aggregate_name", "median",
+                           "aggregate_unit", "time");
   const int failed = !o || !more || json_object_update(o, more) != 0;
   json_decref(more);
   if (!failed) return o;
   json_decref(o);
   return NULL;
-}
-
-static json_t *sample_json(const struct cb_results *r, const struct cb_sample *s) {
-  return joined(benchmark_json(&r->rows[s->row], "", "iteration", s->step_s, s->cpu_s, s->repeats),
-                json_pack("{s:I}", "repetition_index", (json_int_t)s->round));
-}
-
-static json_t *median_json(const struct cb_results *r, size_t row, double cpu_s) {
-  const struct cb_row *measured = &r->rows[row];
-  return joined(benchmark_json(measured, "_median", "aggregate", measured->step.value, cpu_s,
-                               measured->epochs),
-                json_pack("{s:I, s:s, s:s}", "repetitions", (json_int_t)measured->epochs,
-                          "aggregate_name", "median", "aggregate_unit", "time"));
 }
 
 /* Median processor time of the samples [begin, end). */
@@ -73,7 +70,7 @@ static enum cb_status cpu_median(const struct cb_results *r, size_t begin, size_
 
 /* One benchmark a line, so that results can be compared by diff and grep. */
 static enum cb_status dump_benchmarks(const struct cb_results *r, FILE *stream) {
-  const size_t flags = JSON_COMPACT | JSON_REAL_PRECISION(9);
+  const size_t flags = JSON_COMPACT | JSON_REAL_PRECISION(8);
   enum cb_status status = CB_OK;
   for (size_t i = 0, end; !status && i < r->sample_count; i = end) {
     const size_t row = r->samples[i].row;
