@@ -1,0 +1,132 @@
+/* test_iterations.c - the fixed iteration counts of the frames are the smallest
+ * that reach rounding. In quad precision nothing but the missing iterations is
+ * left as an error; it is given in units of what one rounding of F in double
+ * does to the frame, 2^-53 s_1/(s_2 + s_3).
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tests/families.h"
+
+/* The counts as shipped, then variables in their place. */
+#include "kernels/frames/iterations.h"
+enum { SCALED = HIGHAM_SCALED, PLAIN = HIGHAM_PLAIN, SWEEPS = JACOBI_SWEEPS };
+static int scaled, plain, sweeps, turns;
+#undef HIGHAM_SCALED
+#undef HIGHAM_PLAIN
+#undef JACOBI_SWEEPS
+#undef QUATERNION_TURNS
+#define HIGHAM_SCALED scaled
+#define HIGHAM_PLAIN plain
+#define JACOBI_SWEEPS sweeps
+#define QUATERNION_TURNS turns
+
+#define CB_SCALAR __float128
+#define CB_LANES 1
+#define CB_SUFFIX iterations
+#define CB_COUNTED
+#include "kernels/frames/polar_eigen.h"
+#include "kernels/frames/polar_higham.h"
+#include "kernels/frames/polar_quaternion.h"
+#include "kernels/frames/svd.h"
+
+enum { TRIALS = 300, MANY = 10 };
+
+typedef void frame_fn(const T *F, T *R);
+static void orthogonal(const T *F, T *R) { orthogonal_higham(F, R); }
+static void higham(const T *F, T *R) { frame_polar_higham(F, R); }
+static void eigen(const T *F, T *R) { frame_polar_eigen(F, R); }
+static void svd(const T *F, T *R) { frame_svd(F, R); }
+
+static void counts(int s, int p, int j) { scaled = s, plain = p, sweeps = j; }
+
+/* Worst difference between s, p, j iterations and many. */
+static double missing(enum family family, frame_fn *frame, int s, int p, int j) {
+  gsl_rng *rng = scene_rng();
+  double worst = 0;
+  for (int t = 0; t < TRIALS; t++) {
+    double F[9], singular[3];
+    T f[9], R[9], exact[9];
+    random_gradient(rng, family, F, singular);
+    for (int i = 0; i < 9; i++) f[i] = F[i];
+    counts(MANY, MANY, MANY);
+    frame(f, exact);
+    counts(s, p, j);
+    frame(f, R);
+    double unit = 0x1p-53 * singular[0] / (singular[1] + fabs(singular[2]));
+    double error = quad_distance(9, R, exact) / unit;
+    if (!(error <= worst)) worst = error;
+  }
+  gsl_rng_free(rng);
+  return worst;
+}
+
+/* The worst family; each one's error is printed. */
+static double table(const char *name, frame_fn *frame, int s, int p, int j) {
+  double worst = 0;
+  print_message("# %s, iterations %d scaled %d plain, sweeps %d:", name, s, p, j);
+  for (int family = 0; family < FAMILIES; family++) {
+    double error = missing((enum family)family, frame, s, p, j);
+    print_message(" %s %.1e", family_name[family], error);
+    if (!(error <= worst)) worst = error;
+  }
+  print_message("\n");
+  return worst;
+}
+
+static void higham_counts_are_the_smallest(void **state) {
+  (void)state;
+  assert_within("shipped", table("higham", orthogonal, SCALED, PLAIN, 0), 1);
+  assert_true(table("higham", orthogonal, SCALED - 1, PLAIN, 0) > 1);
+  assert_true(table("higham", orthogonal, SCALED, PLAIN - 1, 0) > 1);
+  assert_true(table("higham", orthogonal, SCALED - 1, PLAIN + 1, 0) > 1);
+}
+
+static void sweeps_are_the_fewest(void **state) {
+  (void)state;
+  assert_within("svd", table("svd", svd, 0, 0, SWEEPS), 1);
+  assert_within("eigen", table("eigen", eigen, 0, 0, SWEEPS), 1);
+  assert_within("higham", table("higham, det R = 1", higham, SCALED, PLAIN, SWEEPS), 1);
+  assert_true(table("svd", svd, 0, 0, SWEEPS - 1) > 1);
+  assert_true(table("eigen", eigen, 0, 0, SWEEPS - 1) > 1);
+}
+
+/* From a small angle off, one turn leaves between s_3/(s_1 + s_2 + s_3) and
+ * s_1/(s_1 + s_2 + s_3) of it. */
+static void a_turn_divides_the_angle(void **state) {
+  (void)state;
+  gsl_rng *rng = scene_rng();
+  const double angle = 1e-9;
+  for (int t = 0; t < TRIALS; t++) {
+    double F[9], s[3], axis[3];
+    T f[9], R[9], Q[9], q[4];
+    random_gradient(rng, t % 2 ? TURNED : STRETCHED, F, s);
+    random_vector(rng, 3, axis);
+    for (int i = 0; i < 9; i++) f[i] = F[i];
+    counts(MANY, MANY, MANY);
+    frame_polar_higham(f, R);
+    quaternion_from(R, q);
+    /* q (1, angle/2 axis): about an axis in the undeformed shape */
+    T x = angle / 2 / norm(3, axis) * (quad)axis[0], y = angle / 2 / norm(3, axis) * (quad)axis[1];
+    T z = angle / 2 / norm(3, axis) * (quad)axis[2], w = q[0];
+    T start[4] = {w - q[1] * x - q[2] * y - q[3] * z, q[1] + w * x + q[2] * z - q[3] * y,
+                  q[2] + w * y + q[3] * x - q[1] * z, q[3] + w * z + q[1] * y - q[2] * x};
+    T length =
+        SQRT(start[0] * start[0] + start[1] * start[1] + start[2] * start[2] + start[3] * start[3]);
+    for (int i = 0; i < 4; i++) start[i] /= length;
+    turns = 1;
+    frame_polar_quaternion(f, start, Q);
+    /* |Q - R| = sqrt(2) angle for small angles */
+    double left = quad_distance(9, Q, R) / sqrt(2) / angle, trace = s[0] + s[1] + s[2];
+    assert_within("most that is left", left, s[0] / trace + 1e-7);
+    assert_within("least that is left", s[2] / trace - 1e-7, left);
+  }
+  gsl_rng_free(rng);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(higham_counts_are_the_smallest),
+      cmocka_unit_test(sweeps_are_the_fewest),
+      cmocka_unit_test(a_turn_divides_the_angle),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
