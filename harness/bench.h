@@ -56,7 +56,8 @@ struct cb_bench_figure {
 extern const struct cb_bench_figure cb_bench_figure4, cb_bench_figure7, cb_bench_convergence,
     cb_bench_memory, cb_bench_ancestors, cb_bench_mesh;
 
-/* Gates are on. CB_IO, CB_MEMORY. */
+/* An empty run into options->output, or results/latest. options is kept. CB_IO,
+ * CB_MEMORY. */
 enum cb_status cb_bench_create(const struct cb_options *options, bool quick, double seconds,
                                struct cb_bench *b);
 void cb_bench_free(struct cb_bench *b);
@@ -67,7 +68,7 @@ void cb_bench_free(struct cb_bench *b);
 enum cb_status cb_bench_select(const struct cb_bench *b, bool (*wanted)(const struct cb_variant *v),
                                const struct cb_variant ***list, size_t *count);
 /* *reason := why the variant may not be timed, "" if it may; valid as long as b.
- * Verifies each variant once. CB_MEMORY. */
+ * Verifies each variant once. CB_MEMORY, CB_INTERRUPTED. */
 enum cb_status cb_bench_gate(struct cb_bench *b, const struct cb_variant *v, const char **reason);
 
 /* ---- blocks ----------------------------------------------------------------- */

@@ -24,6 +24,10 @@ is_ratio(m, base) = strcol("figure") eq "7" && column("iterations") == iteration
 # Side by side, so that intervals do not hide each other.
 aside(i) = column("tetrahedra") * 1.04 ** (i - 3)
 
+# The same axis for all panels, with room for the key.
+times = "awk -F'[,/]' '$1 == 7 && $4 == \"f64\" && $9 > 0 {print 1e3 * $9}' " . quoted("bench.csv")
+fastest = real(system(times . " | sort -g | head -n 1"))
+slowest = real(system(times . " | sort -g | tail -n 1"))
 stored = system("awk -F'[,/]' '$1 == 7 && $4 == \"f64\" && !seen[$3]++ {print $3}' " . quoted("bench.csv"))
 
 do for [storage in stored] {
@@ -56,7 +60,7 @@ do for [storage in stored] {
       set ylabel "time of one step, ms"
       unset xlabel
       set logscale y
-      set yrange [*:*]
+      set yrange [0.7 * fastest:6 * slowest]
       set key top left noenhanced
       plot for [i = 1:words(list)] in("bench.csv") \
         using (is(word(list, i)) ? column("tetrahedra") : NaN):(1e3 * column("step_s_median")) \
@@ -68,8 +72,8 @@ do for [storage in stored] {
       set ylabel "time by that of QR"
       set xlabel "tetrahedra"
       unset logscale y
-      set yrange [0.8:*]
-      set key top right
+      set yrange [0.5:*]
+      set key bottom right
       plot for [i = 1:words(list)] in("ratios.csv") \
           using (is_ratio(word(list, i), Q[i]) ? aside(S[i]) : NaN):"ratio_median" \
           with lines linestyle S[i] notitle, \
