@@ -29,6 +29,10 @@ static const char *small_mesh(void) {
   return path;
 }
 
+static void assert_done(const struct process *p) {
+  if (p->exit_status != 0) fail_msg("exit status %d: %s", p->exit_status, p->err);
+}
+
 static void assert_begins(const char *text, const char *start) {
   if (strncmp(text, start, strlen(start)) != 0)
     fail_msg("expected '%s', found '%.200s'", start, text);
@@ -55,7 +59,7 @@ static size_t count_files(const char *path, size_t *parts) {
 static void test_ops_columns(void **state) {
   (void)state;
   struct process p = RUN("ops", "--variant", "qr-updated/ebe-paper/*", "--format", "csv");
-  assert_int_equal(p.exit_status, 0);
+  assert_done(&p);
   assert_begins(p.out, "model,storage,stage,mul,add,div,sqrt\n");
   assert_non_null(strstr(p.out, "\nqr-updated,ebe-paper,strain-displacement,14,5,0,0\n"));
   assert_non_null(strstr(p.out, "\nqr-updated,ebe-paper,frame,"));
@@ -71,7 +75,7 @@ static void test_laws_columns(void **state) {
   (void)state;
   struct process p = RUN("verify", "--laws", "--mesh", small_mesh(), "--variant", "qr-precomputed",
                          "--variant", "qr-exact", "--format", "csv");
-  assert_int_equal(p.exit_status, 0);
+  assert_done(&p);
   assert_begins(p.out, "model,material,law,value,expected,holds");
   assert_int_equal(lines(p.out), 1 + 2 * 2 * 8); /* models, materials, laws */
   assert_null(strstr(p.out, "FAILS"));
@@ -91,7 +95,7 @@ static void test_bench_columns(void **state) {
   (void)state;
   const char *results = temporary_path("results");
   struct process p = RUN("bench", "--quick", "--figure", "memory", "--output", results);
-  assert_int_equal(p.exit_status, 0);
+  assert_done(&p);
   process_free(&p);
   char *csv = read_text(temporary_path("results/bench.csv"));
   assert_begins(csv, "figure,variant,tetrahedra,nodes,iterations,threads,step_s_median,step_s_low,"
@@ -102,10 +106,11 @@ static void test_bench_columns(void **state) {
 
 static void test_bench_mesh(void **state) {
   (void)state;
-  const char *results = temporary_path("own");
+  char results[256]; /* temporary_path keeps only the last four */
+  snprintf(results, sizeof results, "%s", temporary_path("own"));
   struct process p = RUN("bench", "--quick", "--seconds", "1", "--mesh", small_mesh(), "--variant",
                          "qr-*/ebe/f64", "--output", results);
-  assert_int_equal(p.exit_status, 0);
+  assert_done(&p);
   process_free(&p);
   char *csv = read_text(temporary_path("own/bench.csv"));
   assert_non_null(strstr(csv, "\nmesh,qr-exact/ebe/f64,2,5,5,1,"));
