@@ -10,7 +10,7 @@ INCLUDES = -I. -I/usr/include/suitesparse -I/usr/local/include/suitesparse
 CPPFLAGS = $(INCLUDES) -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"'
 LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread
 # The operation counter: every quad-precision call of the counted arithmetic
-# goes through harness/counter.c.
+# goes through harness/verify/counter.c.
 COUNT   = -Wl,--wrap=__addtf3,--wrap=__subtf3,--wrap=__multf3,--wrap=__divtf3,--wrap=sqrtq
 COMMIT := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
@@ -35,13 +35,13 @@ ARITH_f64x4   = -DCB_SCALAR=double -DCB_LANES=4 -DCB_SUFFIX=f64x4 $(LANE_OPT)
 ARITH_f32x8   = -DCB_SCALAR=float -DCB_LANES=8 -DCB_SUFFIX=f32x8 $(LANE_OPT)
 
 GENERIC   := $(wildcard kernels/models/*.c kernels/storage/*.c kernels/solver/*.c)
-ONCE      := $(wildcard kernels/*.c reference/*.c) $(filter-out harness/corobench.c,$(wildcard harness/*.c))
+ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(filter-out harness/corobench.c,$(wildcard harness/*.c))
 # The slowest first, so that no processor waits for them in the end.
 OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE:%.c=$(BUILD)/%.o)
 LANES     := $(foreach a,f64x4 f32x8,$(GENERIC:%.c=$(BUILD)/$(a)/%.o))
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 # The files that state the commit, compiled anew when it changes.
-DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*.c reference/*.c))
+DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
 all: $(BUILD)/corobench ## build the program, build/corobench (the default)
 

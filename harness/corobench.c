@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "harness/error.h"
-#include "harness/nearest.h"
+#include "harness/verbs/nearest.h"
 #include "harness/progress.h"
-#include "harness/verbs.h"
+#include "harness/verbs/verbs.h"
 
 static const struct cb_verb *const verbs[] = {&cb_verb_bench, &cb_verb_verify, &cb_verb_force,
                                              &cb_verb_ops, &cb_verb_list};

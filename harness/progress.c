@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "harness/output.h"
+#include "harness/files/output.h"
 
 /* ---- interrupts ------------------------------------------------------------ */
 

@@ -27,7 +27,7 @@ typedef CB_SCALAR S;
 
 #ifdef CB_COUNTED
 /* Quad precision whose every operation is a library call that the linker
- * redirects to harness/counter.c. A mark says to which stage the following
+ * redirects to harness/verify/counter.c. A mark says to which stage the following
  * operations belong. */
 typedef __float128 REAL; /* rest data are computed in this and rounded to S */
 __float128 sqrtq(__float128);

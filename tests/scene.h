@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "harness/mesh.h"
+#include "harness/files/mesh.h"
 #include "kernels/kernel.h"
 #include "reference/oracles.h"
 

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "harness/error.h"
-#include "harness/mesh.h"
+#include "harness/files/mesh.h"
 
 static void grid_is_the_papers_block(void **state) {
   (void)state;

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "harness/gate.h"
-#include "harness/laws.h"
+#include "harness/verify/gate.h"
+#include "harness/verify/laws.h"
 #define CB_SCALAR double /* the view of f64 on its elements */
 #define CB_LANES 1
 #define CB_SUFFIX f64

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "harness/error.h"
-#include "harness/mesh.h"
+#include "harness/files/mesh.h"
 #include "tests/temporary.h"
 
 /* ---- reading --------------------------------------------------------------- */

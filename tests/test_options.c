@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "harness/error.h"
-#include "harness/nearest.h"
-#include "harness/verbs.h"
+#include "harness/verbs/nearest.h"
+#include "harness/verbs/verbs.h"
 
 enum { ALL = CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED };
 

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "harness/error.h"
-#include "harness/output.h"
+#include "harness/files/output.h"
 #include "harness/progress.h"
 #include "tests/temporary.h"
 

@@ -14,7 +14,7 @@
 #include <jansson.h>
 
 #include "harness/error.h"
-#include "harness/results.h"
+#include "harness/measure/results.h"
 #include "tests/temporary.h"
 
 enum { ROUNDS = 7 };

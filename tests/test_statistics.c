@@ -12,7 +12,7 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include "harness/statistics.h"
+#include "harness/measure/statistics.h"
 
 #define assert_near(value, expected, tolerance)                                                    \
   assert_true(fabs((value) - (expected)) <= (tolerance))

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "harness/error.h"
-#include "harness/table.h"
+#include "harness/files/table.h"
 
 /* To be freed. */
 static char *printed(const struct cb_table *t, enum cb_format format) {

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "harness/progress.h"
-#include "harness/timer.h"
+#include "harness/measure/timer.h"
 
 enum { SUBJECTS = 3, LOG = 4096 };
 

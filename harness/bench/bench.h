@@ -1,0 +1,142 @@
+/* bench.h - what the figures of bench share: the scene, variants that are ready
+ * to step on it, and blocks of them timed in the same rounds.
+ *
+ * Each figure is one file, harness/bench_NAME.c, that measures and prints it.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_BENCH_H
+#define CB_BENCH_H
+
+#include "harness/measure/results.h"
+#include "harness/verbs/verbs.h"
+
+/* ---- scene ---------------------------------------------------------------- */
+
+/* A block, or a mesh scaled to the block's height, of 0.1 m; its lowest nodes
+ * are fixed; it starts twisted and slightly shaken. E = 1e5 Pa, nu = 0.4,
+ * 1000 kg/m^3. */
+struct cb_bench_scene {
+  struct cb_mesh mesh;
+  struct cb_material material;
+  double *mass;   /* [nodes], kg */
+  uint8_t *fixed; /* [nodes] */
+  double *x, *v;  /* [3*nodes] at the start, m, m/s */
+};
+/* nx*ny*nz cells of ten tetrahedra. CB_MEMORY. */
+enum cb_status cb_bench_scene_grid(const size_t cells[3], unsigned long seed,
+                                   struct cb_bench_scene *scene);
+/* See cb_mesh_read; CB_INPUT also for a mesh without height. */
+enum cb_status cb_bench_scene_mesh(const char *path, unsigned long seed,
+                                   struct cb_bench_scene *scene);
+void cb_bench_scene_free(struct cb_bench_scene *scene); /* zeroed is allowed */
+
+/* The paper's step: h = 0.4 ms, 5 iterations; undamped. */
+extern const struct cb_step_parameters cb_bench_step;
+/* The paper's mesh: 512 nodes, 3430 tetrahedra. */
+extern const size_t cb_bench_paper_cells[3];
+
+/* ---- a run of bench -------------------------------------------------------- */
+
+struct cb_gate_result;
+
+struct cb_bench {
+  const struct cb_options *options;
+  double seconds; /* of all figures */
+  double done_s;  /* of the time planned for the figures that are asked for */
+  struct cb_results results;
+  struct cb_gate_result *gates; /* [variants]: what has been verified so far */
+};
+
+struct cb_bench_figure {
+  const char *name;
+  double share; /* of the seconds */
+  enum cb_status (*run)(struct cb_bench *b, double budget_s);
+  void (*print)(const struct cb_results *r, FILE *stream); /* nothing if nothing was measured */
+};
+extern const struct cb_bench_figure cb_bench_figure4, cb_bench_figure7, cb_bench_convergence,
+    cb_bench_memory, cb_bench_ancestors, cb_bench_mesh;
+
+/* An empty run into options->output, or results/latest. options is kept. CB_IO,
+ * CB_MEMORY. */
+enum cb_status cb_bench_create(const struct cb_options *options, bool quick, double seconds,
+                               struct cb_bench *b);
+void cb_bench_free(struct cb_bench *b);
+
+/* *list := the variants to be timed, *count of them, to be freed: those that
+ * --variant selects, or without it those in double precision that are `wanted`
+ * (NULL: all). `counted` is never timed. CB_MEMORY. */
+enum cb_status cb_bench_select(const struct cb_bench *b, bool (*wanted)(const struct cb_variant *v),
+                               const struct cb_variant ***list, size_t *count);
+/* *reason := why the variant may not be timed, "" if it may; valid as long as b.
+ * Verifies each variant once. CB_MEMORY, CB_INTERRUPTED. */
+enum cb_status cb_bench_gate(struct cb_bench *b, const struct cb_variant *v, const char **reason);
+
+/* ---- blocks ----------------------------------------------------------------- */
+
+/* Record a sentence for what kernels or reference returned, as they record none,
+ * and return it; what: the name of what failed. CB_OK is passed on. */
+enum cb_status cb_bench_explain(enum cb_status status, const char *what);
+
+/* A variant on the scene, ready to step. */
+struct cb_job {
+  const struct cb_variant *variant;
+  char name[CB_NAME];
+  struct cb_operator *op;
+  struct cb_stepper *stepper;
+  size_t vector_bytes;
+  void *start_x, *start_v, *x, *v; /* node vectors of the arithmetic */
+  double setup_s;
+  bool lost; /* a position was not finite after the steps: no time counts */
+};
+/* CB_MEMORY. */
+enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_scene *scene,
+                             const struct cb_step_parameters *step, struct cb_job *job);
+void cb_job_free(struct cb_job *job); /* zeroed is allowed */
+
+struct cb_block;
+
+/* Variants times iteration counts on one scene, all to be timed in the same
+ * rounds. Nothing is owned. */
+struct cb_block_plan {
+  const char *figure; /* string constant */
+  const struct cb_bench_scene *scene;
+  size_t variant_count, count_count;
+  const struct cb_variant *const *variants;
+  const size_t *iterations; /* [count_count] */
+  bool parts;               /* time update, solve and product as well; for one count */
+  double budget_s;
+  /* Called with what was timed; NULL: nothing. */
+  enum cb_status (*after)(struct cb_bench *b, const struct cb_block *block);
+};
+struct cb_block {
+  const struct cb_block_plan *plan;
+  size_t job_count; /* of the variants that passed the gate */
+  struct cb_job *jobs;
+  struct cb_samples samples; /* of subject job * count_count + count */
+};
+/* Time the variants that pass the gate for about budget_s, give every variant
+ * its rows, and write the results. */
+enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan);
+/* The samples of one job at one iteration count, [samples.rounds], s. */
+const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t count);
+/* Add the ratios of all jobs that the rule pairs: each frame by QR with the same
+ * strain-displacement policy, each other policy of QR by qr-updated; same
+ * storage and arithmetic. */
+enum cb_status cb_block_ratios(struct cb_bench *b, const struct cb_block *block);
+
+/* ---- text ------------------------------------------------------------------- */
+
+/* Print title and table and free it; NULL: nothing. */
+void cb_bench_print(FILE *stream, const char *title, struct cb_table *t);
+/* A cell "12.3" of value * scale; "*" behind it marks an unstable row, "-" stands
+ * for nothing measured, "failed" for a variant that failed verification. */
+void cb_bench_step_cell(struct cb_table *t, const struct cb_row *row, double scale);
+/* A number, or "-" for NaN. */
+void cb_bench_number_cell(struct cb_table *t, double value);
+/* A cell "1.30 [1.28, 1.33]"; "never" stands for infinity, "-" for NaN. */
+void cb_bench_interval_cell(struct cb_table *t, struct cb_interval interval);
+/* The row of that figure, variant, size and iteration count, or NULL. */
+const struct cb_row *cb_bench_row(const struct cb_results *r, const char *figure,
+                                  const char *variant, size_t tetrahedra, size_t iterations);
+
+#endif

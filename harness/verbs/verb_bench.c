@@ -1,0 +1,163 @@
+/* verb_bench.c - `corobench bench`: the figures, measured on this machine.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <errno.h>
+#include <gsl/gsl_errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "harness/bench/bench.h"
+#include "harness/error.h"
+#include "harness/progress.h"
+
+static const char doc[] =
+    "Measure the paper's figures on this machine: time of a step against iterations (4) and "
+    "tetrahedra (7), convergence, memory, and the linear ancestors. With --mesh, measure the "
+    "variants on that mesh instead.";
+
+static const struct cb_bench_figure *const figures[] = {&cb_bench_memory, &cb_bench_convergence,
+                                                        &cb_bench_figure4, &cb_bench_figure7,
+                                                        &cb_bench_ancestors};
+enum { FIGURES = sizeof figures / sizeof *figures };
+static const double FULL = 170, QUICK = 30; /* s; without --seconds */
+
+enum { KEY_FIGURE = 0x2000, KEY_QUICK, KEY_SECONDS };
+static const struct argp_option own_options[] = {
+    {"figure", KEY_FIGURE, "NAME", 0,
+     "4, 7, convergence, memory or ancestors; may be repeated (default: all)", 0},
+    {"quick", KEY_QUICK, NULL, 0, "Few samples; the results are marked as such", 0},
+    {"seconds", KEY_SECONDS, "S", 0,
+     "Time for measuring all figures (default 170, with --quick 30); more makes every sample "
+     "steadier",
+     0},
+    {0}};
+
+struct request {
+  bool asked[FIGURES], any, quick;
+  double seconds; /* 0: not given */
+};
+
+static enum cb_status ask(struct request *request, const char *name) {
+  for (size_t i = 0; i < FIGURES; i++)
+    if (strcmp(figures[i]->name, name) == 0) {
+      request->asked[i] = request->any = true;
+      return CB_OK;
+    }
+  return cb_fail(CB_INPUT,
+                 "--figure needs 4, 7, convergence, memory or ancestors, not '%s'; the other "
+                 "figures are drawn from what verify writes",
+                 name);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  struct request *request = state->input;
+  enum cb_status status = CB_OK;
+  switch (key) {
+  case KEY_FIGURE: status = ask(request, text); break;
+  case KEY_QUICK: request->quick = true; break;
+  case KEY_SECONDS: status = cb_parse_number("--seconds", text, 1, 86400, &request->seconds); break;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+  return status ? EINVAL : 0;
+}
+
+/* The figures that are asked for, in order, into chosen; returns how many. */
+static size_t choose(const struct request *request, const struct cb_options *options,
+                     const struct cb_bench_figure *chosen[FIGURES]) {
+  size_t count = 0;
+  if (options->mesh_path) {
+    chosen[0] = &cb_bench_mesh;
+    return 1;
+  }
+  for (size_t i = 0; i < FIGURES; i++)
+    if (!request->any || request->asked[i]) chosen[count++] = figures[i];
+  return count;
+}
+
+static enum cb_status measure(struct cb_bench *b, size_t count,
+                              const struct cb_bench_figure *const *chosen) {
+  double planned_s = 0;
+  for (size_t i = 0; i < count; i++) planned_s += chosen[i]->share * b->seconds;
+  enum cb_status status = CB_OK;
+  cb_progress_begin(b->results.quick ? "bench (quick)" : "bench", planned_s);
+  planned_s = 0;
+  for (size_t i = 0; !status && i < count; i++) {
+    b->done_s = planned_s;
+    cb_progress(b->done_s, chosen[i]->name);
+    status = chosen[i]->run(b, chosen[i]->share * b->seconds);
+    planned_s += chosen[i]->share * b->seconds;
+  }
+  if (!status) cb_progress(planned_s, "done");
+  cb_progress_end();
+  return status;
+}
+
+static void print_refused(const struct cb_results *r, FILE *stream) {
+  struct cb_table *t = cb_table_create("variant,figure,status");
+  for (size_t i = 0; t && i < r->row_count; i++) {
+    if (strncmp(r->rows[i].status, "failed", 6) != 0) continue;
+    cb_table_text(t, r->rows[i].variant);
+    cb_table_text(t, r->rows[i].figure);
+    cb_table_text(t, r->rows[i].status);
+  }
+  cb_bench_print(stream, "Not timed", t);
+}
+
+static void print_end(const struct cb_results *r, FILE *stream) {
+  char line[512];
+  size_t unstable = 0;
+  for (size_t i = 0; i < r->row_count; i++) unstable += strcmp(r->rows[i].status, "unstable") == 0;
+  if (unstable > 0)
+    fprintf(stream, "\n* %zu of %zu rows are unstable, they scatter by more than %g %%: %s\n",
+            unstable, r->row_count, 100 * CB_SCATTER_LIMIT, CB_SCATTER_REMEDY);
+  cb_environment_line(&r->environment, sizeof line, line);
+  fprintf(stream, "\nMeasured on %s%s\n", line,
+          r->quick ? "\nQUICK RUN, few samples: run without --quick before you quote a number"
+                   : "");
+  fprintf(
+      stream,
+      "Files in %s: bench.csv and bench.json (medians), samples.csv (raw), ratios.csv, fits.csv, "
+      "crossings.csv, convergence.csv, environment.json; 'make plots' draws them there\n",
+      r->directory);
+}
+
+static enum cb_status print(const struct cb_bench *b, enum cb_format format, size_t count,
+                            const struct cb_bench_figure *const *chosen) {
+  if (format != CB_TABLE) {
+    struct cb_table *t = cb_results_bench_table(&b->results);
+    const enum cb_status status =
+        t ? cb_table_print(t, format, stdout) : cb_fail_memory("the table of results");
+    cb_table_free(t);
+    return status;
+  }
+  for (size_t i = 0; i < count; i++) chosen[i]->print(&b->results, stdout);
+  print_refused(&b->results, stdout);
+  print_end(&b->results, stdout);
+  return CB_OK;
+}
+
+static enum cb_status run(int argc, char **argv) {
+  struct request request = {0};
+  struct cb_options options;
+  struct cb_bench b;
+  const struct cb_bench_figure *chosen[FIGURES];
+  const unsigned mask = CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED;
+  enum cb_status status =
+      cb_options_parse(argc, argv, mask, doc, own_options, parse, &request, &options);
+  if (status) return status;
+  if (options.mesh_path && request.any)
+    return cb_fail(CB_INPUT, "--mesh and --figure exclude each other: the figures have meshes of "
+                             "their own; leave one out");
+  gsl_set_error_handler_off(); /* GSL then reports by status, like everything here */
+  const double seconds = request.seconds > 0 ? request.seconds : request.quick ? QUICK : FULL;
+  const size_t count = choose(&request, &options, chosen);
+  status = cb_bench_create(&options, request.quick, seconds, &b);
+  if (status) return status;
+  status = measure(&b, count, chosen);
+  if (!status) status = print(&b, options.format, count, chosen);
+  cb_bench_free(&b);
+  return status;
+}
+
+const struct cb_verb cb_verb_bench = {"bench", "the paper's figures, measured on this machine",
+                                      run};
