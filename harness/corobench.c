@@ -3,6 +3,7 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <argp.h>
+#include <gsl/gsl_errno.h>
 #include <string.h>
 
 #include "harness/error.h"
@@ -57,6 +58,7 @@ static enum cb_status run(int argc, char **argv) {
 
 int main(int argc, char **argv) {
   cb_interrupt_install();
+  gsl_set_error_handler_off(); /* GSL then reports by status, like everything here */
   enum cb_status status = run(argc, argv);
   if (status == CB_OK) status = cb_stdout_flush();
   if (status != CB_OK) fprintf(stderr, "corobench: %s\n", cb_error_message());

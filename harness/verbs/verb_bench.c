@@ -2,7 +2,6 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <errno.h>
-#include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -148,7 +147,6 @@ static enum cb_status run(int argc, char **argv) {
   if (options.mesh_path && request.any)
     return cb_fail(CB_INPUT, "--mesh and --figure exclude each other: the figures have meshes of "
                              "their own; leave one out");
-  gsl_set_error_handler_off(); /* GSL then reports by status, like everything here */
   const double seconds = request.seconds > 0 ? request.seconds : request.quick ? QUICK : FULL;
   const size_t count = choose(&request, &options, chosen);
   status = cb_bench_create(&options, request.quick, seconds, &b);
