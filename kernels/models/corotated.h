@@ -12,6 +12,13 @@
 #include "kernels/models/strain.h"
 
 #ifdef FRAME_ROTATION
+/* Orthotropic elements call the frame, isotropic ones have it inlined, which is
+ * 10 % faster for the iterative ones: thirty copies would take minutes to build. */
+OUTLINE void frame_called(const T *e, const T *F, T *memory, T *R) {
+  (void)e, (void)F, (void)memory;
+  FRAME_ROTATION(e, F, memory, R);
+}
+
 /* Frame and local first Piola-Kirchhoff stress of one pack.
  * in      policy, exact, ortho  constants; rest; e[9] edges, m
  * in/out  memory
@@ -23,7 +30,10 @@ INLINE void frame_pack(const struct cb_elements *E, int policy, int exact, int o
   T F[9], stretch[9];
   (void)exact, (void)memory, (void)y;
   deformation_gradient(policy, rest, e, F);
-  FRAME_ROTATION(e, F, memory, R);
+  if (ortho)
+    frame_called(e, F, memory, R);
+  else
+    FRAME_ROTATION(e, F, memory, R);
   STAGE(STAGE_FORCE);
   corotated_stress(E->k, rest, ortho, NO_FRAME ? NULL : R, F, stretch, P);
 }

@@ -27,10 +27,8 @@
 #define STORAGE_BLOCKS(ID, TAG, PRODUCTS)                                                          \
   UPDATE_FUNCTION(ID##_matrix_update_##TAG,                                                        \
                   drive_update_matrix(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))               \
-  UPDATE_FUNCTION(ID##_csr_update_##TAG,                                                           \
-                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS, 0))         \
-  UPDATE_FUNCTION(ID##_bcsr_update_##TAG,                                                          \
-                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS, 1))         \
+  UPDATE_FUNCTION(ID##_assembled_update_##TAG,                                                     \
+                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))            \
   PRODUCT_FUNCTION(ID##_matrix_run_##TAG, drive_product(E, u, y, matrix_product))
 
 #define FORM_EBE(ID, TAG, NUMBERS)                                                                 \
@@ -40,8 +38,8 @@
 #define FORM_MATRIX(ID, TAG)                                                                       \
   { ID##_matrix_update_##TAG, ID##_matrix_run_##TAG, 54 }
 #define FORM_CSR(ID, TAG)                                                                          \
-  { ID##_csr_update_##TAG, CB_NAME(cb_product_csr), 0 }
+  { ID##_assembled_update_##TAG, CB_NAME(cb_product_csr), 0 }
 #define FORM_BCSR(ID, TAG)                                                                         \
-  { ID##_bcsr_update_##TAG, CB_NAME(cb_product_bcsr), 0 }
+  { ID##_assembled_update_##TAG, CB_NAME(cb_product_bcsr), 0 }
 
 #endif

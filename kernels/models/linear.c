@@ -18,10 +18,8 @@ COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 1, ortho)
         FULL(E, x, v, h, out);                                                                     \
         E->assembled = true;                                                                       \
       })
-ASSEMBLED_ONCE(linear_csr_once_iso, linear_csr_update_iso, linear_ebe_update_iso)
-ASSEMBLED_ONCE(linear_csr_once_ortho, linear_csr_update_ortho, linear_ebe_update_ortho)
-ASSEMBLED_ONCE(linear_bcsr_once_iso, linear_bcsr_update_iso, linear_ebe_update_iso)
-ASSEMBLED_ONCE(linear_bcsr_once_ortho, linear_bcsr_update_ortho, linear_ebe_update_ortho)
+ASSEMBLED_ONCE(linear_assembled_once_iso, linear_assembled_update_iso, linear_ebe_update_iso)
+ASSEMBLED_ONCE(linear_assembled_once_ortho, linear_assembled_update_ortho, linear_ebe_update_ortho)
 ASSEMBLED_ONCE(linear_matrix_once_iso, linear_matrix_update_iso, linear_ebe_update_iso)
 ASSEMBLED_ONCE(linear_matrix_once_ortho, linear_matrix_update_ortho, linear_ebe_update_ortho)
 
@@ -38,7 +36,7 @@ const struct cb_model CB_NAME(cb_model_linear) = {
     .form = {[CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
              [CB_EBE_MATRIX] = {{linear_matrix_once_iso, linear_matrix_run_iso, 54},
                                 {linear_matrix_once_ortho, linear_matrix_run_ortho, 54}},
-             [CB_CSR] = {{linear_csr_once_iso, CB_NAME(cb_product_csr), 0},
-                         {linear_csr_once_ortho, CB_NAME(cb_product_csr), 0}},
-             [CB_BCSR] = {{linear_bcsr_once_iso, CB_NAME(cb_product_bcsr), 0},
-                          {linear_bcsr_once_ortho, CB_NAME(cb_product_bcsr), 0}}}};
+             [CB_CSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_csr), 0},
+                         {linear_assembled_once_ortho, CB_NAME(cb_product_csr), 0}},
+             [CB_BCSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_bcsr), 0},
+                          {linear_assembled_once_ortho, CB_NAME(cb_product_bcsr), 0}}}};

@@ -13,8 +13,9 @@ static S *block_at(const struct cb_elements *E, bool blocked, uint32_t row, uint
                  : E->values + 9 * (size_t)start + 3 * (size_t)(slot - start);
 }
 
-void CB_NAME(cb_assemble)(struct cb_elements *E, bool products, bool blocked) {
+void CB_NAME(cb_assemble)(struct cb_elements *E, bool products) {
   const struct cb_pattern *p = E->pattern;
+  const bool blocked = !E->scalar_row;
   STAGE(STAGE_ASSEMBLY);
   for (size_t i = 0; i < 9 * p->blocks; i++) E->values[i] = (S)0;
 #if CB_LANES == 1

@@ -71,7 +71,8 @@ INLINE void matrix_product(const struct cb_elements *E, const T *rest, const T *
 
 /* ---- assembled ------------------------------------------------------------ */
 
-void CB_NAME(cb_assemble)(struct cb_elements *E, bool products, bool blocked);
+/* The values of csr or bcsr from the edge sums. */
+void CB_NAME(cb_assemble)(struct cb_elements *E, bool products);
 void CB_NAME(cb_product_csr)(const struct cb_elements *E, const void *u, void *y);
 void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, const void *u, void *y);
 
@@ -90,7 +91,7 @@ INLINE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
 }
 
 INLINE void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                                   blocks_pack_fn *blocks, int products, int blocked) {
+                                   blocks_pack_fn *blocks, int products) {
   clear_vector(E, out);
   for (size_t i = 0; i < 9 * E->pattern->edges; i++) E->edge_sum[i] = (S)0;
   for (size_t p = 0; p < E->packs; p++) {
@@ -105,7 +106,7 @@ INLINE void drive_update_assembled(struct cb_elements *E, const S *x, const S *v
     STAGE(STAGE_ASSEMBLY);
     sum_edges(E, p, X);
   }
-  CB_NAME(cb_assemble)(E, products, blocked);
+  CB_NAME(cb_assemble)(E, products);
 }
 
 #endif
