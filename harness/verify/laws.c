@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "harness/verify/laws.h"
+#include "harness/verify/law_session.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -11,24 +11,9 @@
 
 #include "harness/error.h"
 #include "harness/progress.h"
-#include "harness/verify/probe.h"
-#include "reference/oracles.h"
 
-enum {
-  PATH_POINTS = 128, /* the integrand is smooth and periodic: the trapezoid rule
-                        converges geometrically */
-  PROBES = 16,       /* random vectors where K is too large to decompose */
-  DENSE_NODES = 5,
-  TANGENT_PATCHES = 100 /* quad precision is slow */
-};
-
-/* One measurement: everything per patch, vectors over all nodes. */
-struct session {
-  const struct cb_patches *p;
-  struct cb_probe probe;
-  gsl_rng *rng;
-  double *f, *g, *x, *u, *value; /* f: force at x of the patches; value[count] */
-};
+/* The integrand is smooth and periodic: the trapezoid rule converges geometrically. */
+enum { PATH_POINTS = 128 };
 
 double cb_law_limit(const struct cb_arithmetic *arithmetic) { return 1e6 * arithmetic->roundoff; }
 
@@ -38,11 +23,13 @@ double cb_worst(double a, double b) { return isnan(a) || a > b ? a : b; }
 
 static double norm3(const double *a) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
-static size_t first(const struct session *s, size_t patch) { return 3 * patch * s->p->nodes; }
+static size_t first(const struct cb_law_session *s, size_t patch) {
+  return 3 * patch * s->p->nodes;
+}
 
 /* |a - b| / |scale| over the components of one patch. */
-static double difference(const struct session *s, size_t patch, const double *a, const double *b,
-                         const double *scale) {
+static double difference(const struct cb_law_session *s, size_t patch, const double *a,
+                         const double *b, const double *scale) {
   double d = 0, n = 0;
   for (size_t i = first(s, patch); i < first(s, patch + 1); i++) {
     d += (a[i] - b[i]) * (a[i] - b[i]);
@@ -51,14 +38,14 @@ static double difference(const struct session *s, size_t patch, const double *a,
   return sqrt(d / n);
 }
 
-static void force_from(struct cb_probe *probe, const double *before, const double *x, double *f) {
+void cb_law_force(struct cb_probe *probe, const double *before, const double *x, double *f) {
   cb_probe_reset(probe);
   cb_probe_force(probe, before, f);
   cb_probe_force(probe, x, f);
 }
 
 /* out := Q in + t for every node of every patch, Q and t by patch; turn: no t. */
-static void move(const struct session *s, const double *Q, const double *t, const double *in,
+static void move(const struct cb_law_session *s, const double *Q, const double *t, const double *in,
                  double *out) {
   for (size_t n = 0; n < s->p->count; n++)
     for (size_t i = first(s, n); i < first(s, n + 1); i++) {
@@ -67,7 +54,7 @@ static void move(const struct session *s, const double *Q, const double *t, cons
     }
 }
 
-static enum cb_status measure_rotation(struct session *s) {
+static enum cb_status measure_rotation(struct cb_law_session *s) {
   size_t count = s->p->count, length = 3 * s->p->mesh.nodes;
   double *Q = calloc(count, 9 * sizeof *Q), *q = calloc(count, 9 * sizeof *q);
   double *t = calloc(count, 3 * sizeof *t), *b = calloc(length, sizeof *b);
@@ -88,12 +75,12 @@ static enum cb_status measure_rotation(struct session *s) {
   }
   move(s, Q, t, s->p->before, b);
   move(s, Q, t, s->p->x, s->x);
-  force_from(&s->probe, b, s->x, s->g);
+  cb_law_force(&s->probe, b, s->x, s->g);
   move(s, Q, NULL, s->f, turned);
   for (size_t n = 0; n < count; n++) s->value[n] = difference(s, n, s->g, turned, s->f);
   move(s, q, t, s->p->mesh.X, b);
   move(s, Q, t, s->p->mesh.X, s->x);
-  force_from(&s->probe, b, s->x, s->g);
+  cb_law_force(&s->probe, b, s->x, s->g);
   memset(turned, 0, length * sizeof *turned);
   for (size_t n = 0; n < count; n++) {
     double rest = difference(s, n, s->g, turned, s->f);
@@ -104,7 +91,7 @@ done:
   return status;
 }
 
-static void measure_newton_euler(struct session *s, bool euler) {
+static void measure_newton_euler(struct cb_law_session *s, bool euler) {
   const double *x = s->p->x, *f = s->f;
   for (size_t n = 0; n < s->p->count; n++) {
     double sum[3] = {0}, size = 0, c[3] = {0};
@@ -120,7 +107,7 @@ static void measure_newton_euler(struct session *s, bool euler) {
   }
 }
 
-static enum cb_status measure_energy(struct session *s) {
+static enum cb_status measure_energy(struct cb_law_session *s) {
   size_t length = 3 * s->p->mesh.nodes, count = s->p->count;
   double *work = calloc(2 * count, sizeof *work), *total = work + count;
   if (!work) return cb_fail_memory("the laws");
@@ -155,7 +142,7 @@ static void relabel(const uint32_t *tet, size_t order, uint32_t *out) {
   }
 }
 
-static enum cb_status measure_order(struct session *s, const struct cb_material *material) {
+static enum cb_status measure_order(struct cb_law_session *s, const struct cb_material *material) {
   struct cb_mesh mesh = s->p->mesh;
   struct cb_probe probe = {0};
   mesh.tet = calloc(mesh.tets, 4 * sizeof *mesh.tet);
@@ -165,156 +152,25 @@ static enum cb_status measure_order(struct session *s, const struct cb_material 
   enum cb_status status = cb_probe_open(s->probe.variant, &mesh, material, &probe);
   free(mesh.tet);
   if (status) return status;
-  force_from(&probe, s->p->before, s->p->x, s->g);
+  cb_law_force(&probe, s->p->before, s->p->x, s->g);
   for (size_t n = 0; n < s->p->count; n++) s->value[n] = difference(s, n, s->g, s->f, s->f);
   cb_probe_close(&probe);
   return CB_OK;
 }
 
-/* K[count][d*d] of small patches, column j of all at once. */
-static double *dense(struct session *s, size_t d) {
-  double *K = calloc(s->p->count, d * d * sizeof *K);
-  if (!K) return NULL;
-  force_from(&s->probe, s->p->before, s->p->x, s->g);
-  for (size_t j = 0; j < d; j++) {
-    for (size_t i = 0; i < d * s->p->count; i++) s->u[i] = i % d == j;
-    cb_probe_product(&s->probe, s->u, s->g);
-    for (size_t i = 0; i < d * s->p->count; i++) K[i / d * d * d + i % d * d + j] = s->g[i];
-  }
-  return K;
-}
-
-static enum cb_status measure_dense(struct session *s, bool semidefinite) {
-  size_t d = 3 * s->p->nodes;
-  double eigen[3 * DENSE_NODES], *K = dense(s, d);
-  enum cb_status status = K ? CB_OK : cb_fail_memory("the laws");
-  for (size_t n = 0; n < s->p->count && !status; n++) {
-    double *A = K + n * d * d, skew = 0, size = 0;
-    for (size_t i = 0; i < d; i++)
-      for (size_t j = 0; j < d; j++) {
-        skew += pow(A[i * d + j] - A[j * d + i], 2);
-        size += pow(A[i * d + j], 2);
-      }
-    s->value[n] = sqrt(skew / size);
-    if (!semidefinite || !isfinite(size)) continue;
-    for (size_t i = 0; i < d; i++) /* the quadratic form sees the symmetric part */
-      for (size_t j = 0; j < i; j++) A[i * d + j] = (A[i * d + j] + A[j * d + i]) / 2;
-    status = cb_oracle_eigenvalues(d, A, eigen);
-    s->value[n] = fmax(0, -eigen[0]) / fmax(-eigen[0], eigen[d - 1]);
-  }
-  free(K);
-  return status;
-}
-
-/* A large patch: u . K w - w . K u, and the least u . K u, over random u, w. */
-static enum cb_status measure_probes(struct session *s, bool semidefinite) {
-  size_t length = 3 * s->p->mesh.nodes;
-  double worst = 0, *w = calloc(2 * length, sizeof *w), *Kw = w + length;
-  if (!w) return cb_fail_memory("the laws");
-  force_from(&s->probe, s->p->before, s->p->x, s->g);
-  for (int k = 0; k < PROBES; k++) {
-    double uKw = 0, wKu = 0, uKu = 0, uu = 0, ww = 0, KuKu = 0;
-    for (size_t i = 0; i < length; i++)
-      s->u[i] = gsl_ran_gaussian(s->rng, 1), w[i] = gsl_ran_gaussian(s->rng, 1);
-    cb_probe_product(&s->probe, s->u, s->g);
-    cb_probe_product(&s->probe, w, Kw);
-    for (size_t i = 0; i < length; i++) {
-      uKw += s->u[i] * Kw[i], wKu += w[i] * s->g[i], uKu += s->u[i] * s->g[i];
-      uu += s->u[i] * s->u[i], ww += w[i] * w[i], KuKu += s->g[i] * s->g[i];
-    }
-    double value =
-        semidefinite ? fmax(0, -uKu / sqrt(uu * KuKu)) : fabs(uKw - wKu) / sqrt(ww * KuKu);
-    if (isnan(uKu)) value = NAN; /* fmax would hide it */
-    worst = cb_worst(worst, value);
-  }
-  s->value[0] = worst;
-  free(w);
-  return CB_OK;
-}
-
-/* ---- the operator against the derivative of the force, in quad ------------- */
-
-typedef __float128 quad;
-
-struct tangent {
-  struct cb_operator *op;
-  size_t length;
-  quad *x, *u, *f, *K; /* K u, then K u + df/dx u */
-};
-
-/* t->f, t->K := df/dx along u, and its difference to -K u. */
-static void quad_difference(struct tangent *t, quad step) {
-  cb_operator_reset(t->op);
-  cb_operator_update(t->op, t->x, NULL, 1, t->f);
-  cb_operator_product(t->op, t->u, t->K);
-  for (int side = 1; side >= -1; side -= 2) {
-    quad *out = side == 1 ? t->f : t->x + t->length;
-    for (size_t i = 0; i < t->length; i++) t->x[i] += (quad)side * step * t->u[i];
-    cb_operator_reset(t->op);
-    cb_operator_update(t->op, t->x, NULL, 1, out);
-    for (size_t i = 0; i < t->length; i++) t->x[i] -= (quad)side * step * t->u[i];
-  }
-  for (size_t i = 0; i < t->length; i++) {
-    t->f[i] = (t->f[i] - t->x[t->length + i]) / (2 * step);
-    t->K[i] += t->f[i];
-  }
-}
-
-static const struct cb_variant *in_quad(const struct cb_variant *v) {
-  for (const struct cb_variant *q = cb_variants(NULL); q->model; q++)
-    if (strcmp(q->arithmetic->name, "counted") == 0 && q->storage == v->storage &&
-        strcmp(q->model->name, v->model->name) == 0)
-      return q;
-  return NULL;
-}
-
-static enum cb_status measure_tangent(struct session *s, const struct cb_material *material,
-                                      size_t *measured) {
-  size_t count = s->p->count < TANGENT_PATCHES ? s->p->count : TANGENT_PATCHES;
-  size_t d = 3 * s->p->nodes, dofs = s->p->nodes <= DENSE_NODES ? d : 1;
-  struct cb_mesh mesh = s->p->mesh;
-  struct tangent t = {.length = count * d};
-  mesh.nodes = count * s->p->nodes, mesh.tets = count * s->p->tets;
-  double *wrong = calloc(2 * count, sizeof *wrong), *size = wrong + count;
-  quad *vectors = calloc(5 * t.length, sizeof *vectors);
-  enum cb_status status = CB_MEMORY;
-  if (wrong && vectors)
-    status = cb_operator_create(in_quad(s->probe.variant), &mesh, material, 1, &t.op);
-  if (status) goto done;
-  t.x = vectors, t.u = t.x + 2 * t.length, t.f = t.u + t.length, t.K = t.f + t.length;
-  for (size_t i = 0; i < t.length; i++) t.x[i] = s->p->x[i];
-  for (size_t j = 0; j < dofs && !cb_interrupted(); j++) {
-    for (size_t i = 0; i < t.length; i++)
-      t.u[i] = dofs == 1 ? gsl_ran_gaussian(s->rng, 1) : i % d == j;
-    quad_difference(&t, (quad)1e-10 * (quad)s->p->size);
-    for (size_t i = 0; i < t.length; i++) {
-      wrong[i / d] += (double)(t.K[i] * t.K[i]);
-      size[i / d] += (double)(t.f[i] * t.f[i]);
-    }
-  }
-  for (size_t n = 0; n < count; n++) s->value[n] = sqrt(wrong[n] / size[n]);
-  *measured = count;
-done:
-  cb_operator_free(t.op);
-  free(wrong);
-  free(vectors);
-  return status == CB_MEMORY ? cb_fail_memory("the laws") : status;
-}
-
 /* ---------------------------------------------------------------------------- */
 
-static enum cb_status measure(struct session *s, const struct cb_material *material,
+static enum cb_status measure(struct cb_law_session *s, const struct cb_material *material,
                               enum cb_law law, size_t *measured) {
-  bool small = s->p->nodes <= DENSE_NODES;
   switch (law) {
   case CB_LAW_ROTATION: return measure_rotation(s);
   case CB_LAW_NEWTON: measure_newton_euler(s, false); return CB_OK;
   case CB_LAW_EULER: measure_newton_euler(s, true); return CB_OK;
   case CB_LAW_ENERGY: return measure_energy(s);
   case CB_LAW_ORDER: return measure_order(s, material);
-  case CB_LAW_SYMMETRIC: return small ? measure_dense(s, false) : measure_probes(s, false);
-  case CB_LAW_SEMIDEFINITE: return small ? measure_dense(s, true) : measure_probes(s, true);
-  case CB_LAW_TANGENT: return measure_tangent(s, material, measured);
+  case CB_LAW_SYMMETRIC: return cb_law_symmetric(s);
+  case CB_LAW_SEMIDEFINITE: return cb_law_semidefinite(s);
+  case CB_LAW_TANGENT: return cb_law_tangent(s, material, measured);
   case CB_LAWS: break;
   }
   return CB_INPUT;
@@ -333,7 +189,7 @@ enum cb_status cb_laws_measure(const struct cb_variant *variant, const struct cb
                                const struct cb_patches *patches, unsigned laws,
                                struct cb_law_value *values) {
   size_t length = 3 * patches->mesh.nodes;
-  struct session s = {.p = patches, .rng = gsl_rng_alloc(gsl_rng_mt19937)};
+  struct cb_law_session s = {.p = patches, .rng = gsl_rng_alloc(gsl_rng_mt19937)};
   double *vectors = calloc(4 * length + patches->count, sizeof *vectors);
   enum cb_status status = CB_MEMORY;
   if (!s.rng || !vectors) {
@@ -344,7 +200,7 @@ enum cb_status cb_laws_measure(const struct cb_variant *variant, const struct cb
   s.value = s.u + length;
   status = cb_probe_open(variant, &patches->mesh, material, &s.probe);
   if (status) goto done;
-  force_from(&s.probe, patches->before, patches->x, s.f);
+  cb_law_force(&s.probe, patches->before, patches->x, s.f);
   for (int law = 0; law < CB_LAWS && !status; law++) {
     size_t measured = patches->count;
     if (!(laws & CB_KEEPS(law))) continue;
