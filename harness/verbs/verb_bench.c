@@ -68,9 +68,21 @@ static size_t choose(const struct request *request, const struct cb_options *opt
     chosen[0] = &cb_bench_mesh;
     return 1;
   }
-  for (size_t i = 0; i < FIGURES; i++)
-    if (!request->any || request->asked[i]) chosen[count++] = figures[i];
+  for (size_t i = 0; i < FIGURES; i++) {
+    /* the ancestors are no variants: whoever selects some does not mean them */
+    bool meant = options->glob_count == 0 || figures[i] != &cb_bench_ancestors;
+    if (request->any ? request->asked[i] : meant) chosen[count++] = figures[i];
+  }
   return count;
+}
+
+static enum cb_status check_timeable(const struct cb_options *options) {
+  for (const struct cb_variant *v = cb_variants(NULL); v->model; v++)
+    if (strcmp(v->arithmetic->name, "counted") != 0 && cb_options_selects(options, v)) return CB_OK;
+  return cb_fail(CB_INPUT,
+                 "'%s' selects nothing that can be timed: counted is for counting; "
+                 "name another arithmetic, e.g. 'qr-*/ebe/f64'",
+                 options->globs[0]);
 }
 
 static enum cb_status measure(struct cb_bench *b, size_t count,
@@ -147,6 +159,8 @@ static enum cb_status run(int argc, char **argv) {
   if (options.mesh_path && request.any)
     return cb_fail(CB_INPUT, "--mesh and --figure exclude each other: the figures have meshes of "
                              "their own; leave one out");
+  status = check_timeable(&options);
+  if (status) return status;
   const double seconds = request.seconds > 0 ? request.seconds : request.quick ? QUICK : FULL;
   const size_t count = choose(&request, &options, chosen);
   status = cb_bench_create(&options, request.quick, seconds, &b);
