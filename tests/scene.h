@@ -83,28 +83,31 @@ static inline void scene_free(struct scene *s) {
 /* Isolated nodes of SCENE_RANDOM: the first, the last, and others. */
 static inline bool scene_isolated(uint32_t node) { return node % 6 == 0; }
 
-static inline void random_tet(gsl_rng *rng, struct cb_mesh *mesh, size_t e, bool isolated) {
+static inline void random_tet(gsl_rng *rng, struct cb_mesh *mesh, size_t e) {
   uint32_t *t = mesh->tet + 4 * e;
-  bool good;
+  bool isolated;
   do {
-    good = true;
+    isolated = false;
     for (int j = 0; j < 4; j++) {
       t[j] = (uint32_t)gsl_rng_uniform_int(rng, mesh->nodes);
-      good = good && !(isolated && scene_isolated(t[j]));
+      isolated = isolated || scene_isolated(t[j]);
     }
-    good = good && fabs(cb_mesh_six_volumes(mesh, e)) > 0.15; /* repeated nodes: zero */
-  } while (!good);
+  } while (isolated || fabs(cb_mesh_six_volumes(mesh, e)) < 0.15); /* repeated nodes: zero */
 }
 
-static inline void random_mesh(gsl_rng *rng, size_t nodes, size_t tets, bool isolated,
-                               struct cb_mesh *mesh) {
+static inline void random_mesh(gsl_rng *rng, size_t nodes, size_t tets, struct cb_mesh *mesh) {
   assert_int_equal(cb_mesh_allocate(nodes, tets, mesh), CB_OK);
-  if (nodes == 4) { /* a fixed shape: four random points are often flat */
-    static const double X[12] = {0, 0, 0, 1, 0.1, 0, 0.2, 1, 0.1, 0.3, 0.2, 1};
-    for (int i = 0; i < 12; i++) mesh->X[i] = X[i] + 0.1 * gsl_rng_uniform(rng);
-  } else
-    for (size_t i = 0; i < 3 * nodes; i++) mesh->X[i] = gsl_rng_uniform(rng);
-  for (size_t e = 0; e < tets; e++) random_tet(rng, mesh, e, isolated);
+  for (size_t i = 0; i < 3 * nodes; i++) mesh->X[i] = gsl_rng_uniform(rng);
+  for (size_t e = 0; e < tets; e++) random_tet(rng, mesh, e);
+}
+
+/* Vertices 0, 1, 2, 3 in that order, about a corner of a cube. */
+static inline void one_tet(gsl_rng *rng, bool mirrored, struct cb_mesh *mesh) {
+  static const double X[12] = {0, 0, 0, 1, 0.1, 0, 0.2, 1, 0.1, 0.3, 0.2, 1};
+  assert_int_equal(cb_mesh_allocate(4, 1, mesh), CB_OK);
+  for (int i = 0; i < 12; i++)
+    mesh->X[i] = (mirrored && i % 3 == 0 ? -1 : 1) * (X[i] + 0.2 * gsl_rng_uniform(rng));
+  for (uint32_t j = 0; j < 4; j++) mesh->tet[j] = j;
 }
 
 /* E rows := edges b-a, c-a, d-a of element e. */
@@ -159,12 +162,9 @@ static inline struct scene scene_new(gsl_rng *rng, enum scene_kind kind) {
     assert_int_equal(cb_mesh_grid(2, 1, 1, 0.5, &s.mesh), CB_OK);
     for (size_t i = 0; i < 3 * s.mesh.nodes; i++) s.mesh.X[i] += gsl_ran_gaussian(rng, 0.02);
   } else if (kind == SCENE_RANDOM)
-    random_mesh(rng, 19, 23, true, &s.mesh);
+    random_mesh(rng, 19, 23, &s.mesh);
   else
-    do {
-      cb_mesh_free(&s.mesh);
-      random_mesh(rng, 4, 1, false, &s.mesh);
-    } while ((cb_mesh_six_volumes(&s.mesh, 0) > 0) != (kind == SCENE_ONE));
+    one_tet(rng, kind == SCENE_MIRRORED, &s.mesh);
   size_t n = 3 * s.mesh.nodes;
   s.x = malloc(n * sizeof *s.x);
   s.v = malloc(n * sizeof *s.v);
