@@ -12,33 +12,31 @@
 
 #include "kernels/frames/jacobi.h"
 
-/* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns a
- * number with the sign of det Q.
+INLINE T square9(const T *A) { return dot3(A, A) + dot3(A + 3, A + 3) + dot3(A + 6, A + 6); }
+
+/* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns det Q,
+ * +1 or -1.
  * in   F[9]  row-major, 1
  * fail       rank F < 2: NaN in that lane */
 INLINE T orthogonal_higham(const T *F, T *Q) {
-  T det = LIT(0);
+  T C[9], sign = LIT(0);
   for (int i = 0; i < 9; i++) Q[i] = F[i];
-  for (int n = 0; n < HIGHAM_SCALED + HIGHAM_PLAIN; n++) {
-    T C[9];
+  /* With g^2 = |Q^-1| / |Q| and Q^-T = C / det Q an iterate is a multiple of
+   * Q / |Q| +- C / |C|: no division by the volume of a flat element. The factor
+   * makes it orthogonal once all singular values are equal. */
+  for (int n = 0; n < HIGHAM_SCALED; n++) {
     cofactor3(Q, C);
-    det = dot3(Q, C);
-    /* A flat element has no volume: the smallest one with a normal stands in. */
-    det = SELECT(det == LIT(0), LIT(1e-30), det);
-    T keep = LIT(0.5), turn = LIT(0.5) / det;
-    if (n < HIGHAM_SCALED) {
-      T norm = LIT(0), conorm = LIT(0);
-      for (int i = 0; i < 3; i++) {
-        norm = norm + dot3(Q + 3 * i, Q + 3 * i);
-        conorm = conorm + dot3(C + 3 * i, C + 3 * i);
-      }
-      T g = SQRT(SQRT(conorm / norm) / ABS(det)); /* det^2 would underflow in float */
-      keep = keep * g;
-      turn = turn / g;
-    }
+    if (n == 0) sign = SELECT(dot3(Q, C) < LIT(0), LIT(-1), LIT(1));
+    const T half_root_3 = LIT(0.8660254037844386);
+    T keep = half_root_3 / SQRT(square9(Q)), turn = sign * half_root_3 / SQRT(square9(C));
     for (int i = 0; i < 9; i++) Q[i] = keep * Q[i] + turn * C[i];
   }
-  return det;
+  for (int n = 0; n < HIGHAM_PLAIN; n++) {
+    cofactor3(Q, C);
+    T turn = LIT(0.5) / dot3(Q, C);
+    for (int i = 0; i < 9; i++) Q[i] = LIT(0.5) * Q[i] + turn * C[i];
+  }
+  return sign;
 }
 
 /* R := nearest rotation to F (det R = +1). Where det F < 0 the direction of the

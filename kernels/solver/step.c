@@ -90,18 +90,19 @@ static S apply(const struct cb_stepper *s, const S *restrict p, S *restrict y) {
   return sum;
 }
 
-/* Once the residual is gone the work goes on, with zero steps: every iteration
- * costs the same, and no 0/0 arises. */
+/* Once the residual is gone to rounding, or p . A p underflows (float), the work
+ * goes on with zero steps: every iteration costs the same, and no 0/0 arises. */
 static void solve(struct cb_stepper *s) {
   size_t n = LENGTH(s);
   S *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
   S *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
   const S *restrict b = s->vector[STEPPER_B];
   for (size_t i = 0; i < n; i++) dv[i] = 0, r[i] = p[i] = b[i];
-  S rr = dot(n, r, r), enough = rr * (S)1e-30;
+  const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
+  S rr = dot(n, r, r), enough = rr * (S)(roundoff * roundoff);
   for (size_t k = 0; k < s->parameters.iterations; k++) {
     S py = apply(s, p, y);
-    int finished = !(rr > enough);
+    int finished = !(rr > enough) || py == 0;
     S alpha = finished ? 0 : rr / py;
     S next = 0;
     for (size_t i = 0; i < n; i++) {
