@@ -1,0 +1,224 @@
+/* test_lanes.c - the same sources with several elements at once, f64x4 and
+ * f32x8, compute what f64 computes: forces, products and whole steps of every
+ * model and storage, with packs that are not full, and never touch the padding
+ * of node vectors.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tests/scene.h"
+
+#include "kernels/arithmetics.h"
+
+CB_DECLARE_ARITHMETIC(f64x4)
+CB_DECLARE_ARITHMETIC(f32x8)
+
+static const struct cb_arithmetic *const lanes[] = {&cb_arithmetic_f64x4, &cb_arithmetic_f32x8};
+enum { ARITHMETICS = sizeof lanes / sizeof *lanes };
+
+static const double H = 0.01;
+static const struct cb_step_parameters PARAMETERS = {
+    .h = 0.01, .alpha = 0.002, .beta = 0.5, .iterations = 5};
+
+/* Float: units of its roundoff times the condition; measured at most 6 for one
+ * update or product, 20 for the steps. Double must be the same to the last bit:
+ * the same operations in the same order, and no contraction. */
+static const double LIMIT = 16, STEP_LIMIT = 64;
+
+static double limit_of(const struct cb_variant *v, double limit) {
+  return v->arithmetic->scalar_bytes == sizeof(double) ? 0 : limit;
+}
+
+static void lanes_are_what_they_say(void **state) {
+  (void)state;
+  assert_true(cb_arithmetic_f64x4.lanes == 4 && cb_arithmetic_f64x4.scalar_bytes == 8);
+  assert_true(cb_arithmetic_f32x8.lanes == 8 && cb_arithmetic_f32x8.scalar_bytes == 4);
+  assert_true(cb_arithmetic_f64x4.stride == 4 && cb_arithmetic_f32x8.stride == 4);
+  assert_true(cb_arithmetic_f64x4.roundoff == 0x1p-53);
+  assert_true(cb_arithmetic_f32x8.roundoff == 0x1p-24);
+}
+
+/* Bit by bit: not even a negative zero. */
+static void assert_padding(const struct cb_arithmetic *a, size_t nodes, const void *vector) {
+  const unsigned char *bytes = vector;
+  for (size_t n = 0; n < nodes; n++)
+    for (size_t k = 0; k < a->scalar_bytes; k++)
+      assert_int_equal(bytes[(n * a->stride + 3) * a->scalar_bytes + k], 0);
+}
+
+typedef void each_fn(const struct cb_variant *lanes, const struct cb_variant *scalar,
+                     const struct scene *s, const struct cb_material *m);
+
+/* Every model x material x storage x lanes, on meshes of 1, 20 and 23 elements. */
+static void for_each_variant(each_fn *each) {
+  gsl_rng *rng = scene_rng();
+  for (int kind = 0; kind < SCENES; kind++) {
+    struct scene s = scene_new(rng, (enum scene_kind)kind);
+    for (int ortho = 0; ortho < 2; ortho++) {
+      struct cb_material material = scene_material(ortho);
+      for (int a = 0; a < ARITHMETICS; a++)
+        for (const struct cb_model *const *m = lanes[a]->models; *m; m++)
+          for (int storage = 0; storage < CB_STORAGES; storage++) {
+            struct cb_variant v = {*m, (enum cb_storage)storage, lanes[a]};
+            struct cb_variant scalar = {scene_model(scene_f64(), (*m)->name),
+                                        (enum cb_storage)storage, scene_f64()};
+            assert_true(!(*m)->form[storage][ortho].update ==
+                        !scalar.model->form[storage][ortho].update);
+            if ((*m)->form[storage][ortho].update) each(&v, &scalar, &s, &material);
+          }
+    }
+    scene_free(&s);
+  }
+  gsl_rng_free(rng);
+}
+
+static void same_operator(const struct cb_variant *variant, const struct cb_variant *scalar,
+                          const struct scene *s, const struct cb_material *m) {
+  size_t n = 3 * s->mesh.nodes;
+  quad *q = quads_new(4 * n), *f = q, *y = q + n, *f64 = q + 2 * n, *y64 = q + 3 * n;
+  struct run one, many;
+  run_open(&one, s, scalar, m, 0.3);
+  run_update(&one, one.v, H, f64);
+  run_product(&one, one.u, y64);
+  run_close(&one);
+  run_open(&many, s, variant, m, 0.3);
+  run_update(&many, many.v, H, f);
+  assert_padding(variant->arithmetic, s->mesh.nodes, many.out);
+  run_product(&many, many.u, y);
+  assert_padding(variant->arithmetic, s->mesh.nodes, many.out);
+  double roundoff = variant->arithmetic->roundoff, limit = limit_of(variant, LIMIT);
+  assert_rounding(many.name, n, f, f64, roundoff, s->condition, limit);
+  assert_rounding(many.name, n, y, y64, roundoff, s->condition, limit);
+  run_close(&many);
+  free(q);
+}
+
+static void lanes_give_the_operator(void **state) {
+  (void)state;
+  for_each_variant(same_operator);
+}
+
+/* x[3*nodes] := positions after three steps; node 1 is fixed. */
+static void three_steps(const struct cb_variant *variant, const struct scene *s,
+                        const struct cb_material *m, quad *x) {
+  const struct cb_arithmetic *a = variant->arithmetic;
+  size_t nodes = s->mesh.nodes;
+  double *mass = calloc(nodes, sizeof *mass);
+  uint8_t *fixed = calloc(nodes, 1);
+  assert_true(mass && fixed);
+  fixed[1] = 1;
+  cb_mesh_mass(&s->mesh, m->density, mass);
+  struct run r;
+  struct cb_stepper *stepper;
+  run_open(&r, s, variant, m, cb_step_scale(&PARAMETERS));
+  assert_int_equal(cb_stepper_create(r.op, &PARAMETERS, mass, fixed, &stepper), CB_OK);
+  for (int n = 0; n < 3; n++) {
+    cb_stepper_step(stepper, r.x, r.v, r.u); /* u: any external force */
+    if (a->stride == 4) {
+      assert_padding(a, nodes, r.x);
+      assert_padding(a, nodes, r.v);
+      assert_padding(a, nodes, cb_stepper_b(stepper));
+      assert_padding(a, nodes, cb_stepper_dv(stepper));
+    }
+  }
+  vector_read(a, nodes, r.x, x);
+  cb_stepper_free(stepper);
+  run_close(&r);
+  free(mass);
+  free(fixed);
+}
+
+static void same_steps(const struct cb_variant *variant, const struct cb_variant *scalar,
+                       const struct scene *s, const struct cb_material *m) {
+  size_t n = 3 * s->mesh.nodes;
+  char name[96];
+  quad *q = quads_new(2 * n), *x = q, *x64 = q + n;
+  struct scene loaded = *s;
+  loaded.u = calloc(n, sizeof *loaded.u); /* isolated nodes have no mass: no load there */
+  assert_non_null(loaded.u);
+  for (size_t e = 0; e < 4 * s->mesh.tets; e++) loaded.u[3 * s->mesh.tet[e] + 1] = -10;
+  three_steps(variant, &loaded, m, x);
+  three_steps(scalar, &loaded, m, x64);
+  for (size_t i = 0; i < n; i++) x[i] -= s->x[i], x64[i] -= s->x[i];
+  cb_variant_name(variant, name);
+  assert_rounding(name, n, x, x64, variant->arithmetic->roundoff, s->condition,
+                  limit_of(variant, STEP_LIMIT));
+  free(loaded.u);
+  free(q);
+}
+
+static void lanes_give_the_steps(void **state) {
+  (void)state;
+  for_each_variant(same_steps);
+}
+
+/* Masses and moduli of any size: in float the squares of what is left of the
+ * residual underflow, and p . A p may do so first. Still no 0/0. */
+static void finite_after_convergence(const struct cb_arithmetic *a, struct scene *s, double unit) {
+  struct cb_step_parameters p = PARAMETERS;
+  struct cb_material m;
+  struct run r;
+  struct cb_stepper *stepper;
+  double mass[4];
+  quad x[12];
+  p.iterations = 500;
+  assert_int_equal(cb_material_isotropic(1500 * unit, 0.3, 1000 * unit, &m), CB_OK);
+  cb_mesh_mass(&s->mesh, m.density, mass);
+  struct cb_variant v = {scene_model(a, "qr-updated"), CB_EBE, a};
+  run_open(&r, s, &v, &m, cb_step_scale(&p));
+  assert_int_equal(cb_stepper_create(r.op, &p, mass, NULL, &stepper), CB_OK);
+  cb_stepper_step(stepper, r.x, r.v, NULL);
+  vector_read(a, 4, r.x, x);
+  for (int i = 0; i < 12; i++) assert_within(r.name, fabs((double)x[i] - s->x[i]), 0.1);
+  cb_stepper_free(stepper);
+  run_close(&r);
+}
+
+static void lanes_stay_finite_after_convergence(void **state) {
+  (void)state;
+  gsl_rng *rng = scene_rng();
+  struct scene s = scene_new(rng, SCENE_ONE);
+  for (int a = 0; a < ARITHMETICS; a++)
+    for (double scale = 1; scale > 1e-9; scale *= 0.1)
+      for (double unit = 1e6; unit > 1e-9; unit *= 0.1) {
+        for (int i = 0; i < 12; i++) s.x[i] = s.mesh.X[i] * (1 + scale), s.v[i] = scale;
+        finite_after_convergence(lanes[a], &s, unit);
+      }
+  scene_free(&s);
+  gsl_rng_free(rng);
+}
+
+/* A flat element has a frame in float too. */
+static void flat_elements_are_finite(void **state) {
+  (void)state;
+  static const char *const names[] = {
+      "polar-higham-updated", "polar-eigen-updated", "polar-quaternion-updated",
+      "polar-edges-updated",  "svd-updated",         "qr-updated",
+      "polar-exact"};
+  gsl_rng *rng = scene_rng();
+  struct scene s = scene_new(rng, SCENE_ONE);
+  struct cb_material m = scene_material(false);
+  for (int i = 0; i < 12; i++) s.x[i] = i % 3 == 2 ? 0 : s.mesh.X[i];
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++)
+    for (int a = 0; a < ARITHMETICS; a++) {
+      struct cb_variant v = {scene_model(lanes[a], names[n]), CB_EBE, lanes[a]};
+      struct run r;
+      quad f[12];
+      run_open(&r, &s, &v, &m, 1);
+      run_update(&r, NULL, 1, f);
+      assert_true(quad_norm(12, f) > 0);
+      assert_within(r.name, quad_norm(12, f), 10 * m.young);
+      run_close(&r);
+    }
+  scene_free(&s);
+  gsl_rng_free(rng);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lanes_are_what_they_say),
+      cmocka_unit_test(lanes_give_the_operator),
+      cmocka_unit_test(lanes_give_the_steps),
+      cmocka_unit_test(lanes_stay_finite_after_convergence),
+      cmocka_unit_test(flat_elements_are_finite),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
