@@ -84,9 +84,14 @@ static inline void q_polar(const quad *F, bool reflects, quad *R) {
   }
 }
 
+/* B := A, the columns c and d exchanged where left. */
+static inline void q_upright(const quad *A, bool left, quad *B) {
+  for (int i = 0; i < 9; i++) B[i] = A[i / 3 * 3 + (left && i % 3 ? 3 - i % 3 : i % 3)];
+}
+
 /* Frames of the current and of the rest edges give one of F: R := Q Q0^T. */
 static inline void q_frame(struct element *t) {
-  quad Q[9], Q0[9];
+  quad Q[9], Q0[9], turned[9];
   for (int i = 0; i < 9; i++) t->R[i] = i % 4 == 0;
   if (t->frame == FRAME_POLAR || t->frame == FRAME_REFLECTED)
     q_polar(t->F, t->frame == FRAME_REFLECTED, t->R);
@@ -95,9 +100,11 @@ static inline void q_frame(struct element *t) {
     q_gram_schmidt(t->e0, Q0);
     q_multiply(Q, false, Q0, true, t->R);
   }
-  if (t->frame == FRAME_EDGES) {
-    q_polar(t->e, false, Q);
-    q_polar(t->e0, false, Q0);
+  if (t->frame == FRAME_EDGES) { /* of the right-handed element */
+    q_upright(t->e, t->six0 < 0, turned);
+    q_polar(turned, false, Q);
+    q_upright(t->e0, t->six0 < 0, turned);
+    q_polar(turned, false, Q0);
     q_multiply(Q, false, Q0, true, t->R);
   }
 }
