@@ -185,11 +185,36 @@ static enum cb_status run_counts(struct request *r) {
 
 /* ---- claims ------------------------------------------------------------------ */
 
+/* label and text in lines of at most 100 columns. */
+static void print_wrapped(const char *label, const char *text) {
+  enum { WIDTH = 100, INDENT = 9 };
+  size_t column = INDENT;
+  printf("%-*s", INDENT, label);
+  while (*text) {
+    size_t word = strcspn(text, " ");
+    if (column > INDENT && column + 1 + word > WIDTH) {
+      printf("\n%*s", INDENT, "");
+      column = INDENT;
+    } else if (column > INDENT) {
+      putchar(' ');
+      column++;
+    }
+    printf("%.*s", (int)word, text);
+    column += word;
+    text += word;
+    text += strspn(text, " ");
+  }
+  putchar('\n');
+}
+
 static enum cb_status print_claims(const struct cb_claim *claims, size_t count) {
-  printf("\nClaims: what the paper says, what was measured, the verdict\n");
-  for (size_t i = 0; i < count; i++)
-    printf("\n%-8s %s\n  measured %s\n  verdict  %s\n", claims[i].id, claims[i].paper,
-           claims[i].measured, claims[i].verdict);
+  printf("\nClaims: what is claimed, what was measured, the verdict\n");
+  for (size_t i = 0; i < count; i++) {
+    putchar('\n');
+    print_wrapped(claims[i].id, claims[i].paper);
+    print_wrapped("measured", claims[i].measured);
+    print_wrapped("verdict", claims[i].verdict);
+  }
   return CB_OK;
 }
 
