@@ -4,7 +4,7 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "harness/verify/counter.h"
-#include "tests/scene.h"
+#include "tests/variants.h"
 
 /* A second counter, with names that no --wrap leads to: what a program has that
  * was linked without the flags. */
