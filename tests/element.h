@@ -6,7 +6,7 @@
 #ifndef CB_TESTS_ELEMENT_H
 #define CB_TESTS_ELEMENT_H
 
-#include "tests/scene.h"
+#include "tests/variants.h"
 
 __float128 sqrtq(__float128);
 
@@ -224,6 +224,41 @@ static inline void element_product(const struct element *t, enum gradients b, co
   q_multiply(RH, false, t->R, false, A);
   for (int i = 0; i < 9; i++) H[i] = (A[i] + A[i % 3 * 3 + i / 3]) / 2;
   element_apply(t, b, H, f);
+}
+
+/* ---- shapes and runs for it -------------------------------------------------- */
+
+/* How much rounding of F moves the nearest rotation, or the Gram-Schmidt frame. */
+static inline double frame_condition(const double *X, const double *x) {
+  quad q[12];
+  double F[9], U[9], s[3], V[9];
+  for (int i = 0; i < 12; i++) q[i] = x[i];
+  struct cb_material none = {0};
+  struct element t = element_of(FRAME_NONE, &none, X, q);
+  for (int i = 0; i < 9; i++) F[i] = (double)t.F[i];
+  assert_int_equal(cb_oracle_svd(F, U, s, V), CB_OK);
+  return s[0] / (s[1] + copysign(s[2], determinant3(F))) * s[0] / s[2];
+}
+
+/* One element of either orientation, each vertex moved at random, turned inside
+ * out now and then. */
+static inline struct scene wild_scene(gsl_rng *rng, int trial) {
+  struct scene s = scene_new(rng, trial % 2 ? SCENE_ONE : SCENE_MIRRORED);
+  do {
+    for (int i = 0; i < 12; i++) s.x[i] = s.mesh.X[i] + gsl_ran_gaussian(rng, 0.4);
+    s.condition = frame_condition(s.mesh.X, s.x);
+  } while (!(s.condition < 50));
+  return s;
+}
+
+static inline struct run counted_run(const char *model) {
+  struct run r = {.variant = {scene_model(scene_counted(), model), CB_EBE, scene_counted()}};
+  return r;
+}
+
+static inline void reopen(struct run *r, const struct scene *s, const struct cb_material *m) {
+  struct cb_variant v = r->variant;
+  run_open(r, s, &v, m, 1);
 }
 
 #endif

@@ -5,6 +5,7 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tests/families.h"
+#include "tests/variants.h"
 
 /* The counts as shipped, then variables in their place. */
 #include "kernels/frames/iterations.h"

@@ -4,7 +4,7 @@
  * of node vectors.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "tests/scene.h"
+#include "tests/variants.h"
 
 #include "kernels/arithmetics.h"
 

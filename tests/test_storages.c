@@ -2,7 +2,7 @@
  * same product, in quad to the last digits and in double to its rounding.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "tests/scene.h"
+#include "tests/variants.h"
 
 static const double H = 0.01, C = 0.3;
 

@@ -185,7 +185,7 @@ INLINE const T *paper_b(int policy, int ortho, const T *rest, const T *state) {
 INLINE void corotated_paper(const struct cb_elements *E, int policy, int exact, int ortho,
                             const T *rest, const T *e, const T *ev, T h, T *memory, T *state,
                             T *f) {
-  T *R = state, P[9], y[6], out[12], scale = h * rest[REST_FORCE];
+  T *R = state, P[9], y[6], out[12];
   FRAME_PACK(E, policy, exact, ortho, rest, e, memory, R, P, y);
   STAGE(STAGE_B);
   if (policy != POLICY_PRECOMPUTED) {
@@ -196,6 +196,7 @@ INLINE void corotated_paper(const struct cb_elements *E, int policy, int exact, 
   }
   const T *B = paper_b(policy, ortho, rest, state);
   STAGE(STAGE_FORCE);
+  T scale = h * rest[REST_FORCE];
   for (int i = 0; i < 9; i++) P[i] = scale * P[i];
   if (ev) {
     T u[12] = {LIT(0), LIT(0), LIT(0)}, N[9];

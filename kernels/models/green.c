@@ -23,7 +23,7 @@ INLINE void green_variation(const struct cb_elements *E, int ortho, const T *res
 /* F and the second Piola stress / mu of one pack, and f = h f - c K v. */
 INLINE void green_pack(const struct cb_elements *E, int ortho, const T *rest, const T *e,
                        const T *ev, T h, T *F, T *P2, T *f) {
-  T C[9], P[9], H[9], dP[9], strain[6], scale = -(h * rest[REST_FORCE]);
+  T C[9], P[9], H[9], dP[9], strain[6];
   deformation_gradient(POLICY_PRECOMPUTED, rest, e, F);
   STAGE(STAGE_FORCE);
   for (int i = 0; i < 3; i++)
@@ -33,6 +33,7 @@ INLINE void green_pack(const struct cb_elements *E, int ortho, const T *rest, co
   strain[3] = C[1], strain[4] = C[5], strain[5] = C[2];
   stress_voigt(ortho, E->k, rest + REST_D, strain, P2);
   multiply3(F, P2, P);
+  T scale = -(h * rest[REST_FORCE]);
   for (int i = 0; i < 9; i++) P[i] = scale * P[i];
   if (ev) {
     gradient3(ev, rest + REST_G, H);

@@ -18,8 +18,9 @@ INLINE void sum_node_gradients(struct cb_elements *E, const S *x) {
   for (size_t p = 0; p < E->packs; p++) {
     const uint32_t *tet = E->tet + p * 4 * LANES;
     const T *rest = E->rest + p * E->rest_numbers;
-    T e[9], F[9], weight = rest[REST_FORCE] * rest[REST_FORCE];
+    T e[9], F[9];
     STAGE(STAGE_FRAME);
+    T weight = rest[REST_FORCE] * rest[REST_FORCE];
     gather_edges(x, tet, e);
     deformation_gradient(POLICY_PRECOMPUTED, rest, e, F);
     for (int i = 0; i < 9; i++) F[i] = weight * F[i];
