@@ -151,9 +151,10 @@ const struct cb_variant *cb_variant_find(const char *name);
 struct cb_operator;
 
 /* Build every array; nothing is allocated afterwards. c scales the product
- * (c K) and must be > 0. CB_MEMORY, or CB_INPUT if the variant does not offer
- * this material. Free with cb_operator_free (NULL allowed). The mesh and the
- * material may go away, the variant (cb_variants: static) may not. */
+ * (c K). CB_MEMORY; CB_INPUT if the variant does not offer this material, c is
+ * not > 0 or the mesh has no tetrahedra. Free with cb_operator_free (NULL
+ * allowed). The mesh and the material may go away, the variant (cb_variants:
+ * static) may not. */
 enum cb_status cb_operator_create(const struct cb_variant *variant, const struct cb_mesh *mesh,
                                   const struct cb_material *material, double c,
                                   struct cb_operator **out);
@@ -171,7 +172,8 @@ size_t cb_operator_nodes(const struct cb_operator *op);
 
 /* Block pattern of a csr or bcsr operator, and its numbers as 3x3 blocks (for
  * the direct solver): *rows = nodes, row_start[nodes+1], column[blocks].
- * blocks[9*count] receives c K as double. Only for CB_CSR and CB_BCSR. */
+ * blocks[9*count] receives c K of the last update as double (zero before the
+ * first). Only for CB_CSR and CB_BCSR. */
 void cb_operator_pattern(const struct cb_operator *op, const uint32_t **row_start,
                          const uint32_t **column);
 void cb_operator_blocks(const struct cb_operator *op, double *blocks);
@@ -193,8 +195,9 @@ static inline double cb_step_scale(const struct cb_step_parameters *p) {
 
 struct cb_stepper;
 /* op is used, not owned, and was created with c = cb_step_scale(p). mass[nodes]
- * in kg; fixed[nodes] nonzero keeps that node where it is, exactly (NULL: none).
- * CB_MEMORY. */
+ * in kg; fixed[nodes] nonzero keeps that node where it is, exactly, and sets its
+ * velocity to zero (NULL: none). A node without mass must be fixed or carry no
+ * load: not checked. CB_MEMORY. */
 enum cb_status cb_stepper_create(struct cb_operator *op, const struct cb_step_parameters *p,
                                  const double *mass, const uint8_t *fixed, struct cb_stepper **out);
 void cb_stepper_free(struct cb_stepper *s);

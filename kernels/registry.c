@@ -1,6 +1,7 @@
 /* registry.c - every variant model/storage/arithmetic that this binary offers.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,8 +31,10 @@ static void list_variants(void) {
   for (const struct cb_arithmetic *const *a = cb_arithmetics; *a; a++)
     for (const struct cb_model *const *m = (*a)->models; *m; m++)
       for (int s = 0; s < CB_STORAGES; s++)
-        if ((*m)->form[s][0].update && variant_count < MOST)
+        if ((*m)->form[s][0].update) {
+          assert(variant_count < MOST);
           variants[variant_count++] = (struct cb_variant){*m, (enum cb_storage)s, *a};
+        }
 }
 
 const struct cb_variant *cb_variants(size_t *count) {

@@ -3,6 +3,8 @@
  * Source: Baraff & Witkin 1998, section 5 (filtering: a fixed node's residual
  *         and search direction are zero, so it never moves); no preconditioner,
  *         as in the paper.
+ * Trade:  stopped early, a free body with unequal masses drifts: the residual
+ *         that is left has a sum. Masses as preconditioner would prevent it.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <stdlib.h>
