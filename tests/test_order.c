@@ -5,6 +5,7 @@
 #include <float.h>
 
 #include "harness/bench/bench.h"
+#include "harness/error.h"
 #include "harness/files/order.h"
 #include "tests/temporary.h"
 #include "tests/variants.h"
@@ -172,6 +173,16 @@ static void order_is_the_same_again(void **state) {
   gsl_rng_free(rng);
 }
 
+static void order_without_memory(void **state) {
+  (void)state;
+  const struct cb_mesh endless = {.nodes = 4, .tets = SIZE_MAX / 64};
+  struct cb_order order = {.nodes = 77};
+  cb_fail(CB_BROKEN, "none");
+  assert_int_equal(cb_order_create(&endless, &order), CB_MEMORY);
+  assert_non_null(strstr(cb_error_message(), "the order of the mesh"));
+  assert_int_equal(order.nodes, 77);
+}
+
 /* ---- forces ---------------------------------------------------------------------- */
 
 static const char *const models[] = {"qr-updated", "svd-precomputed"};
@@ -292,6 +303,24 @@ static void shuffled_grid_is_as_local_as_the_grid(void **state) {
   gsl_rng_free(rng);
 }
 
+/* A walk from somewhere within a bar goes both ways at once, with larger levels:
+ * measured 1.55 times the grid's distance, and 0.99 from an end. */
+static void bar_is_walked_from_an_end(void **state) {
+  (void)state;
+  gsl_rng *rng = scene_rng();
+  struct cb_mesh mesh;
+  struct cb_order order;
+  assert_int_equal(cb_mesh_grid(1, 1, 100, 1, &mesh), CB_OK);
+  const struct span natural = mesh_span(&mesh);
+  mesh_shuffle(rng, &mesh);
+  assert_int_equal(cb_order_create(&mesh, &order), CB_OK);
+  mesh_reorder(&order, &mesh);
+  assert_within("mean distance", mesh_span(&mesh).mean / natural.mean, 1.2);
+  cb_order_free(&order);
+  cb_mesh_free(&mesh);
+  gsl_rng_free(rng);
+}
+
 /* The tetrahedra come by their lowest nodes, so their nodes are met one after the
  * other. */
 static void tetrahedra_come_in_the_sequence_of_their_nodes(void **state) {
@@ -352,9 +381,11 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(order_is_a_permutation),
       cmocka_unit_test(order_is_the_same_again),
+      cmocka_unit_test(order_without_memory),
       cmocka_unit_test(forces_agree_to_rounding),
       cmocka_unit_test(forces_of_an_element_are_the_same_bits),
       cmocka_unit_test(shuffled_grid_is_as_local_as_the_grid),
+      cmocka_unit_test(bar_is_walked_from_an_end),
       cmocka_unit_test(tetrahedra_come_in_the_sequence_of_their_nodes),
       cmocka_unit_test(bench_puts_a_file_in_order),
   };

@@ -1,6 +1,7 @@
 /* order.c - nodes in the levels of a walk through the mesh from one of its ends,
  * tetrahedra by their lowest, then by their highest node.
- * Source: Cuthill & McKee 1969; the end by George & Liu 1979.
+ * Source: Cuthill & McKee 1969; the end by George & Liu 1979. Not sorted by degree
+ *         and not reversed: neither changed the time of a step.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "harness/files/order.h"
