@@ -12,7 +12,8 @@
 #include "harness/error.h"
 #include "harness/files/mesh.h"
 
-/* Walks that look for an end: each is deeper than the one before, three do. */
+/* At most: two or three found an end on every mesh that was tried; the limit keeps
+ * the time linear on any other. */
 enum { WALKS = 8 };
 
 /* The tetrahedra around node n are around[start[n]] to around[start[n + 1] - 1]. */
