@@ -25,7 +25,8 @@ struct cb_bench_scene {
 /* nx*ny*nz cells of ten tetrahedra. CB_MEMORY. */
 enum cb_status cb_bench_scene_grid(const size_t cells[3], unsigned long seed,
                                    struct cb_bench_scene *scene);
-/* See cb_mesh_read; CB_INPUT also for a mesh without height. */
+/* See cb_mesh_read; CB_INPUT also for a mesh without height. Nodes and tetrahedra
+ * come in the program's own order (cb_order_create), not in the file's. */
 enum cb_status cb_bench_scene_mesh(const char *path, unsigned long seed,
                                    struct cb_bench_scene *scene);
 void cb_bench_scene_free(struct cb_bench_scene *scene); /* zeroed is allowed */
