@@ -22,6 +22,13 @@
 #define INLINE static inline __attribute__((always_inline))
 /* One copy in a file, for what nothing is timed with: builds are faster. */
 #define OUTLINE static __attribute__((noinline, unused))
+/* The work of one pack: inlined where a pack is one element, called where it is
+ * many, so that the storages of a model share it. */
+#if CB_LANES == 1
+#define PACK_LINKAGE INLINE
+#else
+#define PACK_LINKAGE OUTLINE
+#endif
 #define LANES CB_LANES
 typedef CB_SCALAR S;
 /* Node vectors: x y z, padded to four where whole nodes are loaded as one. */

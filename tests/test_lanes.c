@@ -18,14 +18,10 @@ static const double H = 0.01;
 static const struct cb_step_parameters PARAMETERS = {
     .h = 0.01, .alpha = 0.002, .beta = 0.5, .iterations = 5};
 
-/* Float: units of its roundoff times the condition; measured at most 6 for one
- * update or product, 20 for the steps. Double must be the same to the last bit:
- * the same operations in the same order, and no contraction. */
+/* Units of roundoff times the condition; measured at most 6 for one update or
+ * product, 20 for the steps. Not to the last bit, not even double: lanes add the
+ * shares of elements to a node in another order. */
 static const double LIMIT = 16, STEP_LIMIT = 64;
-
-static double limit_of(const struct cb_variant *v, double limit) {
-  return v->arithmetic->scalar_bytes == sizeof(double) ? 0 : limit;
-}
 
 static void lanes_are_what_they_say(void **state) {
   (void)state;
@@ -60,8 +56,10 @@ static void for_each_variant(each_fn *each) {
             struct cb_variant v = {*m, (enum cb_storage)storage, lanes[a]};
             struct cb_variant scalar = {scene_model(scene_f64(), (*m)->name),
                                         (enum cb_storage)storage, scene_f64()};
-            assert_true(!(*m)->form[storage][ortho].update ==
-                        !scalar.model->form[storage][ortho].update);
+            /* the paper's chain is for scalars: lanes are held against it */
+            if (storage != CB_EBE_PAPER)
+              assert_true(!(*m)->form[storage][ortho].update ==
+                          !scalar.model->form[storage][ortho].update);
             if ((*m)->form[storage][ortho].update) each(&v, &scalar, &s, &material);
           }
     }
@@ -84,7 +82,7 @@ static void same_operator(const struct cb_variant *variant, const struct cb_vari
   assert_padding(variant->arithmetic, s->mesh.nodes, many.out);
   run_product(&many, many.u, y);
   assert_padding(variant->arithmetic, s->mesh.nodes, many.out);
-  double roundoff = variant->arithmetic->roundoff, limit = limit_of(variant, LIMIT);
+  double roundoff = variant->arithmetic->roundoff, limit = LIMIT;
   assert_rounding(many.name, n, f, f64, roundoff, s->condition, limit);
   assert_rounding(many.name, n, y, y64, roundoff, s->condition, limit);
   run_close(&many);
@@ -139,8 +137,7 @@ static void same_steps(const struct cb_variant *variant, const struct cb_variant
   three_steps(scalar, &loaded, m, x64);
   for (size_t i = 0; i < n; i++) x[i] -= s->x[i], x64[i] -= s->x[i];
   cb_variant_name(variant, name);
-  assert_rounding(name, n, x, x64, variant->arithmetic->roundoff, s->condition,
-                  limit_of(variant, STEP_LIMIT));
+  assert_rounding(name, n, x, x64, variant->arithmetic->roundoff, s->condition, STEP_LIMIT);
   free(loaded.u);
   free(q);
 }

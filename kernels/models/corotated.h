@@ -127,6 +127,9 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
   for (int j = 0; j < 9; j += 3) apply3(R, p + j, f + j);
 }
 
+typedef void corotated_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *ev,
+                               T h, T *memory, T *R, T *w, T *f);
+
 /* f := c K u where R = I. */
 INLINE void frameless_product(T k, int ortho, const T *rest, const T *u, T *f) {
   T H[9], M[9];
@@ -137,10 +140,11 @@ INLINE void frameless_product(T k, int ortho, const T *rest, const T *u, T *f) {
 
 /* ---- ebe: state w, or (orthotropic) R and, if it changes, b ----------------- */
 
-INLINE void corotated_ebe(const struct cb_elements *E, int policy, int exact, int ortho,
-                          const T *rest, const T *e, const T *ev, T h, T *memory, T *state, T *f) {
+INLINE void corotated_ebe(const struct cb_elements *E, corotated_pack_fn *pack, int policy,
+                          int ortho, const T *rest, const T *e, const T *ev, T h, T *memory,
+                          T *state, T *f) {
   T R[9], w[9];
-  corotated_pack(E, policy, exact, ortho, rest, e, ev, h, memory, R, w, f);
+  pack(E, rest, e, ev, h, memory, R, w, f);
   if (NO_FRAME) return; /* the rest gradients are the world gradients */
   if (ortho) {
     for (int i = 0; i < 9; i++) state[i] = R[i];
@@ -163,10 +167,10 @@ INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, int o
 
 /* ---- ebe-matrix, csr, bcsr: edge products (isotropic) or blocks ------------ */
 
-INLINE void corotated_blocks(const struct cb_elements *E, int policy, int exact, int ortho,
+INLINE void corotated_blocks(const struct cb_elements *E, corotated_pack_fn *pack, int ortho,
                              const T *rest, const T *e, const T *ev, T h, T *memory, T *X, T *f) {
   T R[9], w[9];
-  corotated_pack(E, policy, exact, ortho, rest, e, ev, h, memory, R, w, f);
+  pack(E, rest, e, ev, h, memory, R, w, f);
   STAGE(STAGE_ASSEMBLY);
   if (ortho)
     edge_blocks_local(rest + REST_D, R, w, X);
@@ -220,9 +224,13 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 
 /* Functions of model ID with the element functions bound to constants. */
 #define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
+  PACK_LINKAGE void ID##_pack_##TAG(const struct cb_elements *E, const T *r, const T *e,           \
+                                    const T *ev, T h, T *m, T *R, T *w, T *f) {                    \
+    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, R, w, f);                              \
+  }                                                                                                \
   INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,     \
                              T h, T *m, T *s, T *f) {                                              \
-    corotated_ebe(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, s, f);                                  \
+    corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, ev, h, m, s, f);                        \
   }                                                                                                \
   INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
                                      const T *u, T *f) {                                           \
@@ -230,7 +238,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
   }                                                                                                \
   INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,  \
                                 T h, T *m, T *X, T *f) {                                           \
-    corotated_blocks(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, X, f);                               \
+    corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, ev, h, m, X, f);                             \
   }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))
@@ -250,16 +258,31 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 #define COROTATED_STATE_EBE(POLICY, ORTHO) (!(ORTHO) ? 9 : (POLICY) == POLICY_PRECOMPUTED ? 9 : 18)
 #define COROTATED_STATE_PAPER(POLICY) ((POLICY) == POLICY_PRECOMPUTED ? 9 : SPARSE ? 18 : 21)
 
+#if CB_LANES == 1
+#define COROTATED_PAPERS(ID, POLICY, EXACT)                                                        \
+  COROTATED_PAPER(ID, POLICY, EXACT, 0, iso)                                                       \
+  COROTATED_PAPER(ID, POLICY, EXACT, 1, ortho)
+#define COROTATED_PAPER_FORMS(ID, POLICY)                                                          \
+  {                                                                                                \
+    FORM_PAPER(ID, iso, COROTATED_STATE_PAPER(POLICY)),                                            \
+        FORM_PAPER(ID, ortho, COROTATED_STATE_PAPER(POLICY))                                       \
+  }
+#else /* the paper's chain is what lanes are held against */
+#define COROTATED_PAPERS(ID, POLICY, EXACT)
+#define COROTATED_PAPER_FORMS(ID, POLICY)                                                          \
+  {                                                                                                \
+    {NULL, NULL, 0}, { NULL, NULL, 0 }                                                             \
+  }
+#endif
+
 #define COROTATED(ID, POLICY, EXACT)                                                               \
   COROTATED_FORM(ID, POLICY, EXACT, 0, iso)                                                        \
   COROTATED_FORM(ID, POLICY, EXACT, 1, ortho)                                                      \
-  COROTATED_PAPER(ID, POLICY, EXACT, 0, iso)                                                       \
-  COROTATED_PAPER(ID, POLICY, EXACT, 1, ortho)
+  COROTATED_PAPERS(ID, POLICY, EXACT)
 
 #define COROTATED_FORMS(ID, POLICY)                                                                \
   {                                                                                                \
-    [CB_EBE_PAPER] = {FORM_PAPER(ID, iso, COROTATED_STATE_PAPER(POLICY)),                          \
-                      FORM_PAPER(ID, ortho, COROTATED_STATE_PAPER(POLICY))},                       \
+    [CB_EBE_PAPER] = COROTATED_PAPER_FORMS(ID, POLICY),                                            \
     [CB_EBE] = {FORM_EBE(ID, iso, COROTATED_STATE_EBE(POLICY, 0)),                                 \
                 FORM_EBE(ID, ortho, COROTATED_STATE_EBE(POLICY, 1))},                              \
     [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), FORM_MATRIX(ID, ortho)},                              \

@@ -8,6 +8,8 @@
 #ifndef CB_BLOCKS_H
 #define CB_BLOCKS_H
 
+#include <string.h>
+
 #include "kernels/storage/drive.h"
 
 /* One pack in an update, as update_pack_fn; X[6][9] are blocks, or what
@@ -76,17 +78,18 @@ void CB_NAME(cb_assemble)(struct cb_elements *E, bool products);
 void CB_NAME(cb_product_csr)(const struct cb_elements *E, const void *u, void *y);
 void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, const void *u, void *y);
 
-/* Sums X into the edges, turned where the edge runs from high to low node. */
-INLINE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
+/* Sums X[6][9] into the edges, turned where the edge runs from high to low node. */
+PACK_LINKAGE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
   const uint32_t *edge_of = E->pattern->edge_of + pack * 6 * LANES;
+  S numbers[54 * LANES]; /* [6][9][LANES] */
+  memcpy(numbers, X, sizeof numbers);
   for (size_t l = 0; l < live_lanes(E, pack); l++)
-    for (int n = 0; n < 6; n++) {
-      uint32_t edge = edge_of[n * LANES + (int)l];
+    for (size_t n = 0; n < 6; n++) {
+      uint32_t edge = edge_of[n * LANES + l];
       S *sum = E->edge_sum + 9 * (size_t)(edge >> 1);
-      if (edge & 1)
-        for (int i = 0; i < 9; i++) sum[i] += LANE(X[9 * n + i % 3 * 3 + i / 3], l);
-      else
-        for (int i = 0; i < 9; i++) sum[i] += LANE(X[9 * n + i], l);
+      const S *block = numbers + 9 * LANES * n + l;
+      for (size_t i = 0; i < 9; i++)
+        sum[i] += block[LANES * (edge & 1 ? i % 3 * 3 + i / 3 : i)];
     }
 }
 

@@ -8,6 +8,7 @@
 #define CB_DRIVE_H
 
 #include "kernels/elements.h"
+#include "kernels/storage/lanes.h"
 #include "kernels/tensor3.h"
 
 /* One pack in an update.
@@ -23,11 +24,7 @@ typedef void product_pack_fn(const struct cb_elements *E, const T *rest, const T
 /* e[9] := differences of the node vector x along b-a, c-a, d-a. */
 INLINE void gather_edges(const S *x, const uint32_t *tet, T *e) {
   T p[12];
-  for (int j = 0; j < 4; j++)
-    for (int l = 0; l < LANES; l++) {
-      const S *node = x + STRIDE * (size_t)tet[j * LANES + l];
-      for (int i = 0; i < 3; i++) LANE(p[3 * j + i], l) = node[i];
-    }
+  for (int j = 0; j < 4; j++) load_nodes(x, tet + j * LANES, p + 3 * j);
   for (int j = 0; j < 9; j++) e[j] = p[3 + j] - p[j % 3];
 }
 
@@ -36,12 +33,8 @@ INLINE void scatter_edges(S *y, const uint32_t *tet, size_t live, const T *f) {
   T a[3];
   for (int i = 0; i < 3; i++) a[i] = -(f[i] + f[3 + i] + f[6 + i]);
   STAGE(STAGE_SCATTER);
-  for (size_t l = 0; l < live; l++)
-    for (int j = 0; j < 4; j++) {
-      S *node = y + STRIDE * (size_t)tet[j * LANES + (int)l];
-      const T *part = j == 0 ? a : f + 3 * (j - 1);
-      for (int i = 0; i < 3; i++) node[i] += LANE(part[i], l);
-    }
+  add_to_nodes(y, tet, live, a);
+  for (int j = 1; j < 4; j++) add_to_nodes(y, tet + j * LANES, live, f + 3 * (j - 1));
 }
 
 INLINE void clear_vector(const struct cb_elements *E, S *y) {

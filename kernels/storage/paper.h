@@ -116,17 +116,11 @@ INLINE void drive_product_nodes(const struct cb_elements *E, const S *u, S *y,
   for (size_t p = 0; p < E->packs; p++) {
     const uint32_t *tet = E->tet + p * 4 * LANES;
     T du[12], f[12];
-    for (int j = 0; j < 4; j++)
-      for (int l = 0; l < LANES; l++)
-        for (int i = 0; i < 3; i++)
-          LANE(du[3 * j + i], l) = u[STRIDE * (size_t)tet[j * LANES + l] + (size_t)i];
+    for (int j = 0; j < 4; j++) load_nodes(u, tet + j * LANES, du + 3 * j);
     STAGE(STAGE_PRODUCT);
     product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
     STAGE(STAGE_SCATTER);
-    for (size_t l = 0; l < live_lanes(E, p); l++)
-      for (int j = 0; j < 4; j++)
-        for (int i = 0; i < 3; i++)
-          y[STRIDE * (size_t)tet[j * LANES + (int)l] + (size_t)i] += LANE(f[3 * j + i], l);
+    for (int j = 0; j < 4; j++) add_to_nodes(y, tet + j * LANES, live_lanes(E, p), f + 3 * j);
   }
 }
 
