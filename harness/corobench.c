@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "harness/error.h"
-#include "harness/verbs/nearest.h"
 #include "harness/progress.h"
+#include "harness/verbs/nearest.h"
 #include "harness/verbs/verbs.h"
 
-static const struct cb_verb *const verbs[] = {&cb_verb_bench, &cb_verb_verify, &cb_verb_force,
-                                             &cb_verb_ops, &cb_verb_list};
+static const struct cb_verb *const verbs[] = {&cb_verb_bench, &cb_verb_verify,  &cb_verb_force,
+                                              &cb_verb_ops,   &cb_verb_machine, &cb_verb_list};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static void print_help(FILE *stream) {

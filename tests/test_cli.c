@@ -17,7 +17,7 @@
 
 static void test_help(void **state) {
   (void)state;
-  const char *const verbs[] = {"bench", "verify", "force", "ops", "list"};
+  const char *const verbs[] = {"bench", "verify", "force", "ops", "machine", "list"};
   struct process all = RUN("--help");
   assert_int_equal(all.exit_status, 0);
   assert_string_equal(all.err, "");

@@ -12,7 +12,8 @@ struct cb_verb {
   const char *name, *summary;
   enum cb_status (*run)(int argc, char **argv); /* argv[0] = "corobench NAME" */
 };
-extern const struct cb_verb cb_verb_list, cb_verb_verify, cb_verb_ops, cb_verb_force, cb_verb_bench;
+extern const struct cb_verb cb_verb_list, cb_verb_verify, cb_verb_ops, cb_verb_force, cb_verb_bench,
+    cb_verb_machine;
 
 /* Options that several verbs share; a verb takes those of its mask. */
 enum {

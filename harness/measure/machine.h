@@ -1,0 +1,42 @@
+/* machine.h - what this machine can do at most: arithmetic in registers, bandwidth
+ * of each level of memory, and the roofline over both.
+ *
+ * Source: roofline, Williams, Waterman & Patterson 2009; triad, McCalpin 1995.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_MACHINE_H
+#define CB_MACHINE_H
+
+#include "harness/measure/loops.h"
+#include "harness/measure/statistics.h"
+
+enum cb_level { CB_L1, CB_L2, CB_L3, CB_DRAM, CB_LEVELS };
+extern const char *const cb_level_name[CB_LEVELS];
+extern const char *const cb_scalar_name[CB_SCALARS];
+
+/* On one thread, and on one for each processor that the process may use (the same
+ * measurement when that is one). */
+enum cb_crew { CB_ONE, CB_ALL, CB_CREWS };
+
+/* NaN: an instruction set or cache that is not there. */
+struct cb_machine {
+  size_t threads[CB_CREWS];
+  struct cb_interval peak[CB_LOOP_SETS][CB_SCALARS][CB_CREWS]; /* flop/s; FMA = 2 flops */
+  struct cb_interval read[CB_LEVELS][CB_CREWS];                /* B/s read */
+  struct cb_interval triad[CB_LEVELS][CB_CREWS];               /* B/s read and written */
+  size_t bytes[CB_LEVELS][CB_CREWS];       /* working set of all threads together; 0: not there */
+  const char *vectors;                     /* instruction set of read and triad */
+  double peak_flops[CB_SCALARS][CB_CREWS]; /* flop/s of the best instruction set */
+  double bandwidth[CB_LEVELS][CB_CREWS];   /* B/s, the better of read and triad */
+};
+
+/* Measure, in about 5 s, with a progress bar. DRAM is measured on up to 768 MB, a
+ * quarter of the memory at most; where the last cache is larger than that, its
+ * figure is partly that cache's. CB_MEMORY, CB_INTERRUPTED; recorded. */
+enum cb_status cb_machine_measure(struct cb_machine *m);
+
+/* flop/s that work of so many flops and bytes, the bytes coming from that level,
+ * can reach: the peak or bandwidth times flops / bytes, whichever is less. */
+double cb_machine_attainable(const struct cb_machine *m, double flops, double bytes,
+                             enum cb_level level, enum cb_crew crew, enum cb_scalar scalar);
+
+#endif
