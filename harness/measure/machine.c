@@ -16,8 +16,10 @@
 const char *const cb_level_name[CB_LEVELS] = {"L1", "L2", "L3", "DRAM"};
 const char *const cb_scalar_name[CB_SCALARS] = {"f32", "f64"};
 
-enum { EPOCHS = 9, PAGE = 2 << 20 /* B, a large page */ };
-static const double EPOCH_S = 6e-3;
+/* Epochs are shorter than the time slice of a busy system, which a thread that was
+ * just woken has to itself. One pass over DRAM is longer in any case. */
+enum { EPOCHS = 25, DRAM_EPOCHS = 7, PAGE = 2 << 20 /* B, a large page */ };
+static const double EPOCH_S = 2e-3;
 static const double DRAM_LEAST = 256e6, DRAM_MOST = 768e6; /* B */
 
 static const struct cb_interval NOT_MEASURED = {NAN, NAN, NAN};
@@ -29,6 +31,7 @@ struct job {
   double *numbers; /* thread i has those from i * slice on */
   size_t slice;
   size_t length; /* how many of its slice a thread uses; a multiple of 3 units */
+  size_t epochs;
 };
 
 struct session {
@@ -73,13 +76,16 @@ static void run_fill(void *context, size_t thread, size_t repeats) {
 static enum cb_status measure(struct session *s, enum cb_crew crew, cb_crew_work *work,
                               struct job *job, double amount, const char *what,
                               struct cb_interval *rate) {
-  double samples[EPOCHS];
+  double samples[EPOCHS], scatter;
   cb_progress((double)s->done, what);
-  enum cb_status status = cb_crew_time(s->m.threads[crew], work, job, EPOCH_S, EPOCHS, samples);
+  enum cb_status status =
+      cb_crew_time(s->m.threads[crew], work, job, EPOCH_S, job->epochs, samples);
   if (status) return status;
-  for (size_t e = 0; e < EPOCHS; e++) samples[e] = amount / samples[e];
+  for (size_t e = 0; e < job->epochs; e++) samples[e] = amount / samples[e];
+  status = cb_median_interval(job->epochs, samples, rate, &scatter);
   s->done++;
-  return cb_median_interval(EPOCHS, samples, rate, NULL);
+  s->m.unstable += !cb_scatter_stable(scatter);
+  return status;
 }
 
 static enum cb_status measure_peaks(struct session *s, enum cb_crew crew) {
@@ -87,7 +93,7 @@ static enum cb_status measure_peaks(struct session *s, enum cb_crew crew) {
   for (size_t set = 0; cb_loops[set].name && !status; set++) {
     if (!cb_loops[set].runs()) continue;
     for (enum cb_scalar scalar = 0; scalar < CB_SCALARS && !status; scalar++) {
-      struct job job = {.loops = &cb_loops[set], .scalar = scalar};
+      struct job job = {.loops = &cb_loops[set], .scalar = scalar, .epochs = EPOCHS};
       const size_t size = scalar == CB_F32 ? sizeof(float) : sizeof(double);
       const double flops = 2.0 * CB_LOOP_CHAINS * (double)(cb_loops[set].bytes / size) * 1000;
       status = measure(s, crew, run_multiply_add, &job, flops * (double)s->m.threads[crew],
@@ -100,6 +106,7 @@ static enum cb_status measure_peaks(struct session *s, enum cb_crew crew) {
 static enum cb_status measure_level(struct session *s, enum cb_crew crew, enum cb_level level,
                                     struct job *job) {
   const double bytes = (double)s->m.bytes[level][crew];
+  job->epochs = level == CB_DRAM ? DRAM_EPOCHS : EPOCHS;
   job->length = s->m.bytes[level][crew] / s->m.threads[crew] / sizeof(double);
   enum cb_status status =
       measure(s, crew, run_read, job, bytes, cb_level_name[level], &s->m.read[level][crew]);
@@ -216,6 +223,7 @@ enum cb_status cb_machine_measure(struct cb_machine *m) {
   }
   cb_progress_end();
   if (status) return status;
+  s.m.measurements = s.total;
   summarize(&s.m);
   *m = s.m;
   return CB_OK;

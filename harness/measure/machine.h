@@ -24,6 +24,7 @@ struct cb_machine {
   struct cb_interval read[CB_LEVELS][CB_CREWS];                /* B/s read */
   struct cb_interval triad[CB_LEVELS][CB_CREWS];               /* B/s read and written */
   size_t bytes[CB_LEVELS][CB_CREWS];       /* working set of all threads together; 0: not there */
+  size_t measurements, unstable;           /* how many, and of these by cb_scatter_stable */
   const char *vectors;                     /* instruction set of read and triad */
   double peak_flops[CB_SCALARS][CB_CREWS]; /* flop/s of the best instruction set */
   double bandwidth[CB_LEVELS][CB_CREWS];   /* B/s, the better of read and triad */

@@ -116,6 +116,10 @@ static enum cb_status run(int argc, char **argv) {
   if (!table) return cb_fail_memory("the table of the machine");
   if (o.output) status = cb_output_table(o.output, "machine.csv", table, CB_CSV);
   if (!status) status = cb_table_print(table, o.format, stdout);
+  if (!status && o.format == CB_TABLE && m.unstable > 0)
+    printf("\n* %zu of %zu figures scatter by more than %g %%: close other programs, fix the CPU "
+           "frequency, and measure again\n",
+           m.unstable, m.measurements, 100 * CB_SCATTER_LIMIT);
   cb_table_free(table);
   return status;
 }
