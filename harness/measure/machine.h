@@ -30,7 +30,7 @@ struct cb_machine {
   double bandwidth[CB_LEVELS][CB_CREWS];   /* B/s, the better of read and triad */
 };
 
-/* Measure, in about 5 s, with a progress bar. DRAM is measured on up to 768 MB, a
+/* Measure, in about 5 s, with a progress bar. DRAM is measured on up to 512 MB, a
  * quarter of the memory at most; where the last cache is larger than that, its
  * figure is partly that cache's. CB_MEMORY, CB_INTERRUPTED; recorded. */
 enum cb_status cb_machine_measure(struct cb_machine *m);
