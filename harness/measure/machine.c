@@ -18,7 +18,8 @@ const char *const cb_scalar_name[CB_SCALARS] = {"f32", "f64"};
 
 /* Epochs are shorter than the time slice of a busy system, which a thread that was
  * just woken has to itself. One pass over DRAM is longer in any case. */
-enum { EPOCHS = 25, DRAM_EPOCHS = 7, PAGE = 2 << 20 /* B, a large page */ };
+enum { EPOCHS = 25, DRAM_EPOCHS = 7 };
+enum { PAGE = 2 << 20 /* B, a large page */, BATCH = 1000 /* multiply-adds of a repeat */ };
 static const double EPOCH_S = 2e-3;
 static const double DRAM_LEAST = 256e6, DRAM_MOST = 512e6; /* B */
 
@@ -48,7 +49,7 @@ static void run_multiply_add(void *context, size_t thread, size_t repeats) {
   const struct job *j = context;
   (void)thread;
   /* A call by pointer: the result need not be used for the work to be done. */
-  j->loops->multiply_add[j->scalar](1000 * repeats, 0.999, 0.001);
+  j->loops->multiply_add[j->scalar](BATCH * repeats, 0.999, 0.001);
 }
 
 static void run_read(void *context, size_t thread, size_t repeats) {
@@ -95,7 +96,7 @@ static enum cb_status measure_peaks(struct session *s, enum cb_crew crew) {
     for (enum cb_scalar scalar = 0; scalar < CB_SCALARS && !status; scalar++) {
       struct job job = {.loops = &cb_loops[set], .scalar = scalar, .epochs = EPOCHS};
       const size_t size = scalar == CB_F32 ? sizeof(float) : sizeof(double);
-      const double flops = 2.0 * CB_LOOP_CHAINS * (double)(cb_loops[set].bytes / size) * 1000;
+      const double flops = 2.0 * CB_LOOP_CHAINS * BATCH * (double)(cb_loops[set].bytes / size);
       status = measure(s, crew, run_multiply_add, &job, flops * (double)s->m.threads[crew],
                        cb_loops[set].name, &s->m.peak[set][scalar][crew]);
     }
