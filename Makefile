@@ -25,20 +25,27 @@ FIRST  := $(filter setup clean,$(MAKECMDGOALS))
 # One source, many arithmetics: each file of $(GENERIC) is compiled once per
 # name, with the scalar and the lanes below. `counted` is -O0, so that what is
 # counted is what is written: nothing folded, merged or moved between stages.
-ARITHMETICS = f64 counted
+ARITHMETICS = f64 f64x4 f64x8 f32x8 f32x16 counted
 ARITH_f64     = -DCB_SCALAR=double -DCB_LANES=1 -DCB_SUFFIX=f64
 ARITH_counted = -DCB_SCALAR=__float128 -DCB_LANES=1 -DCB_SUFFIX=counted -DCB_COUNTED -O0
-# Lanes are shown to compile and to agree; at -O3 they alone take minutes to
-# compile, and making them fast comes later.
-LANE_OPT      = -O1
-ARITH_f64x4   = -DCB_SCALAR=double -DCB_LANES=4 -DCB_SUFFIX=f64x4 $(LANE_OPT)
-ARITH_f32x8   = -DCB_SCALAR=float -DCB_LANES=8 -DCB_SUFFIX=f32x8 $(LANE_OPT)
+# Lanes are compiled for the instruction set that has them and run where the
+# processor has it; on another architecture the compiler splits them into what
+# there is. Their multiply-adds are fused.
+ifeq ($(shell uname -m),x86_64)
+AVX2          = -mavx2 -mfma -ffp-contract=fast -DCB_NEEDS='"avx2"' -DCB_FLAGS='"-mavx2 -mfma -ffp-contract=fast"'
+AVX512        = -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512 \
+                -ffp-contract=fast -DCB_NEEDS='"avx512"' \
+                -DCB_FLAGS='"-mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512 -ffp-contract=fast"'
+endif
+ARITH_f64x4   = -DCB_SCALAR=double -DCB_LANES=4 -DCB_SUFFIX=f64x4 $(AVX2)
+ARITH_f32x8   = -DCB_SCALAR=float -DCB_LANES=8 -DCB_SUFFIX=f32x8 $(AVX2)
+ARITH_f64x8   = -DCB_SCALAR=double -DCB_LANES=8 -DCB_SUFFIX=f64x8 $(AVX512)
+ARITH_f32x16  = -DCB_SCALAR=float -DCB_LANES=16 -DCB_SUFFIX=f32x16 $(AVX512)
 
 GENERIC   := $(wildcard kernels/models/*.c kernels/storage/*.c kernels/solver/*.c)
 ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(filter-out harness/corobench.c,$(wildcard harness/*.c))
 # The slowest first, so that no processor waits for them in the end.
 OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE:%.c=$(BUILD)/%.o)
-LANES     := $(foreach a,f64x4 f32x8,$(GENERIC:%.c=$(BUILD)/$(a)/%.o))
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
@@ -54,7 +61,7 @@ test: programs ## build and run all tests; the last line is the total
 	@tests/run $(TESTS)
 
 sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
-	@$(MAKE) --no-print-directory BUILD=build-sanitize OPT=-O1 LANE_OPT=-O0 \
+	@$(MAKE) --no-print-directory BUILD=build-sanitize OPT=-O1 \
 	  SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' test
 
 verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
@@ -93,12 +100,11 @@ $(BUILD)/$(1)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $$(@D)
 	$$(CC) $$(CPPFLAGS) $$(CFLAGS) $$(ARITH_$(1)) -MMD -MP -c -o $$@ $$<
 endef
-$(foreach a,f64 counted f64x4 f32x8,$(eval $(call arithmetic_rule,$(a))))
+$(foreach a,$(ARITHMETICS),$(eval $(call arithmetic_rule,$(a))))
 
 $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 	@echo 'LINK $@'
 	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
-$(BUILD)/tests/test_lanes: $(LANES)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
@@ -110,7 +116,7 @@ define stamp
 @mkdir -p $(@D)
 @echo "$$STAMP" | cmp -s - $@ || echo "$$STAMP" >$@
 endef
-$(BUILD)/flags: export STAMP = $(CC) $(CPPFLAGS) $(CFLAGS) $(foreach a,f64 counted f64x4 f32x8,$(ARITH_$(a)))
+$(BUILD)/flags: export STAMP = $(CC) $(CPPFLAGS) $(CFLAGS) $(foreach a,$(ARITHMETICS),$(ARITH_$(a)))
 $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)

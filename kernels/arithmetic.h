@@ -39,13 +39,14 @@ typedef CB_SCALAR S;
  * redirects to harness/verify/counter.c. A mark says to which stage the following
  * operations belong. */
 typedef __float128 REAL; /* rest data are computed in this and rounded to S */
+typedef __float128 ACC;  /* sums over many numbers */
 __float128 sqrtq(__float128);
 void cb_counter_stage(int stage);
 #define STAGE(stage) cb_counter_stage(stage)
 INLINE S scalar_sqrt(S a) { return sqrtq(a); }
 INLINE REAL real_sqrt(REAL a) { return sqrtq(a); }
 #else
-typedef double REAL;
+typedef double REAL, ACC;
 #define STAGE(stage) ((void)0)
 INLINE S scalar_sqrt(S a) { return sizeof(S) == sizeof(float) ? (S)sqrtf((float)a) : (S)sqrt(a); }
 INLINE REAL real_sqrt(REAL a) { return sqrt(a); }

@@ -123,6 +123,8 @@ struct cb_model {
 /* One arithmetic: its scalar, its lanes, its models. */
 struct cb_arithmetic {
   const char *name;
+  const char *needs;                  /* instruction set: "", "avx2", "avx512" */
+  const char *flags;                  /* compiled with, beside the program's */
   size_t scalar_bytes, lanes, stride;   /* stride: scalars per node */
   double roundoff;                      /* unit roundoff of the scalar */
   const struct cb_model *const *models; /* NULL-terminated */
@@ -132,6 +134,9 @@ struct cb_arithmetic {
   const struct cb_step_functions *step;
 };
 extern const struct cb_arithmetic *const cb_arithmetics[]; /* NULL-terminated; f64 first */
+/* Does this processor have what it needs? Variants of the others are not listed
+ * and must not be run. */
+bool cb_arithmetic_runs(const struct cb_arithmetic *a);
 
 struct cb_variant {
   const struct cb_model *model;

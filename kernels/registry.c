@@ -8,9 +8,26 @@
 #include "kernels/arithmetics.h"
 
 CB_DECLARE_ARITHMETIC(f64)
+CB_DECLARE_ARITHMETIC(f64x4)
+CB_DECLARE_ARITHMETIC(f64x8)
+CB_DECLARE_ARITHMETIC(f32x8)
+CB_DECLARE_ARITHMETIC(f32x16)
 CB_DECLARE_ARITHMETIC(counted)
-const struct cb_arithmetic *const cb_arithmetics[] = {&cb_arithmetic_f64, &cb_arithmetic_counted,
-                                                      NULL};
+const struct cb_arithmetic *const cb_arithmetics[] = {
+    &cb_arithmetic_f64,   &cb_arithmetic_f64x4,  &cb_arithmetic_f64x8,
+    &cb_arithmetic_f32x8, &cb_arithmetic_f32x16, &cb_arithmetic_counted,
+    NULL};
+
+bool cb_arithmetic_runs(const struct cb_arithmetic *a) {
+#if defined(__x86_64__)
+  if (strcmp(a->needs, "avx2") == 0)
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (strcmp(a->needs, "avx512") == 0)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+#endif
+  return a->needs[0] == '\0';
+}
 
 const char *const cb_storage_name[CB_STORAGES] = {"ebe-paper", "ebe", "ebe-matrix", "csr", "bcsr"};
 const char *const cb_storage_summary[CB_STORAGES] = {
@@ -29,7 +46,7 @@ static size_t variant_count;
 
 static void list_variants(void) {
   for (const struct cb_arithmetic *const *a = cb_arithmetics; *a; a++)
-    for (const struct cb_model *const *m = (*a)->models; *m; m++)
+    for (const struct cb_model *const *m = (*a)->models; *m && cb_arithmetic_runs(*a); m++)
       for (int s = 0; s < CB_STORAGES; s++)
         if ((*m)->form[s][0].update) {
           assert(variant_count < MOST);

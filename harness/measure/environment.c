@@ -118,16 +118,28 @@ static json_t *caches_json(const struct cb_environment *e) {
   return list;
 }
 
+/* What each arithmetic is compiled with beside the program's flags. */
+static json_t *arithmetic_flags_json(void) {
+  json_t *flags = json_object();
+  for (const struct cb_arithmetic *const *a = cb_arithmetics; flags && *a; a++)
+    if (json_object_set_new(flags, (*a)->name, json_string((*a)->flags)) != 0) {
+      json_decref(flags);
+      flags = NULL;
+    }
+  return flags;
+}
+
 json_t *cb_environment_json(const struct cb_environment *e) {
   const json_int_t scaling =
       strcmp(e->governor, "performance") != 0 && strcmp(e->governor, "unknown") != 0;
   /* json_pack fails, and frees what it was given, when a part is NULL. */
-  return json_pack("{s:s, s:I, s:f, s:b, s:o, s:s, s:s, s:s, s:s, s:f, s:s, s:s, s:s, s:I}", "date",
-                   e->date, "num_cpus", (json_int_t)e->cores, "mhz_per_cpu", e->mhz,
+  return json_pack("{s:s, s:I, s:f, s:b, s:o, s:s, s:s, s:s, s:s, s:f, s:s, s:s, s:o, s:s, s:I}",
+                   "date", e->date, "num_cpus", (json_int_t)e->cores, "mhz_per_cpu", e->mhz,
                    "cpu_scaling_enabled", (int)scaling, "caches", caches_json(e),
                    "library_build_type", "release", "cpu", e->cpu, "governor", e->governor,
                    "kernel", e->kernel, "memory_bytes", e->memory, "compiler", e->compiler, "flags",
-                   e->flags, "commit", e->commit, "threads", (json_int_t)e->threads);
+                   e->flags, "arithmetic_flags", arithmetic_flags_json(), "commit", e->commit,
+                   "threads", (json_int_t)e->threads);
 }
 
 void cb_environment_line(const struct cb_environment *e, size_t size, char *line) {

@@ -62,7 +62,8 @@ static enum cb_status emit(const struct request *r, const char *title, const cha
 
 /* ---- laws -------------------------------------------------------------------- */
 
-/* One variant a model: the selected one that comes first, ebe before others. */
+/* One variant a model: of the selected ones that of the first arithmetic (f64, if
+ * it is among them), ebe before other storages. */
 static const struct cb_variant **select_models(const struct cb_options *o, size_t *count) {
   size_t all;
   const struct cb_variant *v = cb_variants(&all), **list = calloc(all + 1, sizeof *list);
@@ -70,10 +71,10 @@ static const struct cb_variant **select_models(const struct cb_options *o, size_
   for (; list && v->model; v++) {
     if (strcmp(v->arithmetic->name, "counted") == 0 || !cb_options_selects(o, v)) continue;
     size_t i = 0;
-    while (i < *count && list[i]->model != v->model) i++;
+    while (i < *count && strcmp(list[i]->model->name, v->model->name) != 0) i++;
     if (i == *count)
       list[(*count)++] = v;
-    else if (v->storage == CB_EBE)
+    else if (v->storage == CB_EBE && v->arithmetic == list[i]->arithmetic)
       list[i] = v;
   }
   return list;

@@ -154,15 +154,14 @@ INLINE void corotated_ebe(const struct cb_elements *E, corotated_pack_fn *pack, 
     for (int i = 0; i < 9; i++) state[i] = w[i];
 }
 
+/* Without a frame, or orthotropic; the others share cb_product_gradients. */
 INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, int ortho, const T *rest,
                                   const T *state, const T *u, T *f) {
   if (NO_FRAME)
     frameless_product(E->k, ortho, rest, u, f);
-  else if (ortho)
+  else
     local_product(rest + REST_D, state, policy == POLICY_PRECOMPUTED ? rest + REST_G : state + 9, u,
                   f);
-  else
-    gradients_product(E->k, state, u, f);
 }
 
 /* ---- ebe-matrix, csr, bcsr: edge products (isotropic) or blocks ------------ */
@@ -232,16 +231,19 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                              T h, T *m, T *s, T *f) {                                              \
     corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, ev, h, m, s, f);                        \
   }                                                                                                \
-  INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
-                                     const T *u, T *f) {                                           \
-    corotated_ebe_product(E, POLICY, ORTHO, r, s, u, f);                                           \
-  }                                                                                                \
   INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,  \
                                 T h, T *m, T *X, T *f) {                                           \
     corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, ev, h, m, X, f);                             \
   }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))
+
+#define COROTATED_PRODUCT(ID, POLICY, ORTHO, TAG)                                                  \
+  INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
+                                     const T *u, T *f) {                                           \
+    corotated_ebe_product(E, POLICY, ORTHO, r, s, u, f);                                           \
+  }                                                                                                \
+  STORAGE_EBE_PRODUCT(ID, TAG)
 
 #define COROTATED_PAPER(ID, POLICY, EXACT, ORTHO, TAG)                                             \
   INLINE void ID##_paper_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,   \
@@ -278,12 +280,13 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 #define COROTATED(ID, POLICY, EXACT)                                                               \
   COROTATED_FORM(ID, POLICY, EXACT, 0, iso)                                                        \
   COROTATED_FORM(ID, POLICY, EXACT, 1, ortho)                                                      \
+  COROTATED_PRODUCT(ID, POLICY, 1, ortho)                                                          \
   COROTATED_PAPERS(ID, POLICY, EXACT)
 
 #define COROTATED_FORMS(ID, POLICY)                                                                \
   {                                                                                                \
     [CB_EBE_PAPER] = COROTATED_PAPER_FORMS(ID, POLICY),                                            \
-    [CB_EBE] = {FORM_EBE(ID, iso, COROTATED_STATE_EBE(POLICY, 0)),                                 \
+    [CB_EBE] = {FORM_EBE_SHARED(ID, iso, COROTATED_STATE_EBE(POLICY, 0)),                          \
                 FORM_EBE(ID, ortho, COROTATED_STATE_EBE(POLICY, 1))},                              \
     [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), FORM_MATRIX(ID, ortho)},                              \
     [CB_CSR] = {FORM_CSR(ID, iso), FORM_CSR(ID, ortho)}, [CB_BCSR] = {                             \

@@ -9,6 +9,7 @@
 
 #include "kernels/storage/blocks.h"
 #include "kernels/storage/paper.h"
+#include "kernels/storage/products.h"
 
 #define UPDATE_FUNCTION(NAME, CALL)                                                                \
   static void NAME(struct cb_elements *E, const void *x, const void *v, double h, void *out) {     \
@@ -18,7 +19,9 @@
   static void NAME(const struct cb_elements *E, const void *u, void *y) { CALL; }
 
 #define STORAGE_EBE(ID, TAG)                                                                       \
-  UPDATE_FUNCTION(ID##_ebe_update_##TAG, drive_update(E, x, v, h, out, ID##_ebe_##TAG))            \
+  UPDATE_FUNCTION(ID##_ebe_update_##TAG, drive_update(E, x, v, h, out, ID##_ebe_##TAG))
+/* ... and its product, unless it is cb_product_gradients. */
+#define STORAGE_EBE_PRODUCT(ID, TAG)                                                               \
   PRODUCT_FUNCTION(ID##_ebe_run_##TAG, drive_product(E, u, y, ID##_ebe_product_##TAG))
 #define STORAGE_PAPER(ID, TAG)                                                                     \
   UPDATE_FUNCTION(ID##_paper_update_##TAG, drive_update(E, x, v, h, out, ID##_paper_##TAG))        \
@@ -28,15 +31,16 @@
   UPDATE_FUNCTION(ID##_matrix_update_##TAG,                                                        \
                   drive_update_matrix(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))               \
   UPDATE_FUNCTION(ID##_assembled_update_##TAG,                                                     \
-                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))            \
-  PRODUCT_FUNCTION(ID##_matrix_run_##TAG, drive_product(E, u, y, matrix_product))
+                  drive_update_assembled(E, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))
 
 #define FORM_EBE(ID, TAG, NUMBERS)                                                                 \
   { ID##_ebe_update_##TAG, ID##_ebe_run_##TAG, NUMBERS }
+#define FORM_EBE_SHARED(ID, TAG, NUMBERS)                                                          \
+  { ID##_ebe_update_##TAG, CB_NAME(cb_product_gradients), NUMBERS }
 #define FORM_PAPER(ID, TAG, NUMBERS)                                                               \
   { ID##_paper_update_##TAG, ID##_paper_run_##TAG, NUMBERS }
 #define FORM_MATRIX(ID, TAG)                                                                       \
-  { ID##_matrix_update_##TAG, ID##_matrix_run_##TAG, 54 }
+  { ID##_matrix_update_##TAG, CB_NAME(cb_product_matrix), 54 }
 #define FORM_CSR(ID, TAG)                                                                          \
   { ID##_assembled_update_##TAG, CB_NAME(cb_product_csr), 0 }
 #define FORM_BCSR(ID, TAG)                                                                         \

@@ -105,6 +105,7 @@ INLINE void green_blocks(const struct cb_elements *E, int ortho, const T *rest, 
     green_blocks(E, ORTHO, r, e, ev, h, X, f);                                                     \
   }                                                                                                \
   STORAGE_EBE(green, TAG)                                                                          \
+  STORAGE_EBE_PRODUCT(green, TAG)                                                                  \
   STORAGE_BLOCKS(green, TAG, 0)
 GREEN(0, iso)
 GREEN(1, ortho)

@@ -10,6 +10,8 @@
 
 COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 0, iso)
 COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 1, ortho)
+COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, 0, iso)
+COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, 1, ortho)
 
 /* The matrix is assembled once; afterwards only the force pass is left. */
 #define ASSEMBLED_ONCE(NAME, FULL, FORCE)                                                          \
@@ -34,8 +36,8 @@ const struct cb_model CB_NAME(cb_model_linear) = {
     .laws = {LINEAR_LAWS, LINEAR_LAWS},
     .policy = POLICY_PRECOMPUTED,
     .form = {[CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
-             [CB_EBE_MATRIX] = {{linear_matrix_once_iso, linear_matrix_run_iso, 54},
-                                {linear_matrix_once_ortho, linear_matrix_run_ortho, 54}},
+             [CB_EBE_MATRIX] = {{linear_matrix_once_iso, CB_NAME(cb_product_matrix), 54},
+                                {linear_matrix_once_ortho, CB_NAME(cb_product_matrix), 54}},
              [CB_CSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_csr), 0},
                          {linear_assembled_once_ortho, CB_NAME(cb_product_csr), 0}},
              [CB_BCSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_bcsr), 0},

@@ -29,6 +29,12 @@ static const struct cb_element_functions elements = {
     CB_NAME(cb_elements_create), CB_NAME(cb_elements_free),    CB_NAME(cb_elements_reset),
     CB_NAME(cb_elements_bytes),  CB_NAME(cb_elements_pattern), CB_NAME(cb_elements_blocks)};
 
+#ifndef CB_NEEDS
+#define CB_NEEDS ""
+#endif
+#ifndef CB_FLAGS
+#define CB_FLAGS ""
+#endif
 #ifdef CB_COUNTED
 #define ROUNDOFF 0x1p-113
 #else
@@ -37,6 +43,8 @@ static const struct cb_element_functions elements = {
 
 const struct cb_arithmetic CB_NAME(cb_arithmetic) = {
     .name = CB_STRING(CB_SUFFIX),
+    .needs = CB_NEEDS,
+    .flags = CB_FLAGS,
     .scalar_bytes = sizeof(S),
     .lanes = LANES,
     .stride = STRIDE,

@@ -8,6 +8,8 @@
  *         symmetric, so it is offered unassembled only.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <string.h>
+
 #include "kernels/frames/polar_higham.h"
 #include "kernels/models/forms.h"
 #include "kernels/models/strain.h"
@@ -37,9 +39,11 @@ INLINE void turn_nodes(struct cb_elements *E) {
   for (size_t n = 0; n < E->nodes; n += LANES) {
     T F[9], R[9];
     size_t live = E->nodes - n < LANES ? E->nodes - n : LANES;
+    S numbers[9][LANES];
     for (size_t l = 0; l < LANES; l++)
       for (int i = 0; i < 9; i++)
-        LANE(F[i], l) = E->node_sum[9 * (n + (l < live ? l : live - 1)) + (size_t)i];
+        numbers[i][l] = E->node_sum[9 * (n + (l < live ? l : live - 1)) + (size_t)i];
+    memcpy(F, numbers, sizeof F);
     frame_polar_higham(F, R);
     for (size_t l = 0; l < live; l++)
       for (int i = 0; i < 9; i++) E->node_frame[9 * (n + l) + (size_t)i] = LANE(R[i], l);
@@ -53,9 +57,11 @@ INLINE void warped_forces(const struct cb_elements *E, int ortho, const T *rest,
   const T *G = rest + REST_G;
   for (int j = 0; j < 4; j++) {
     T R[9], g[3], p[3], A[9], P[9], N[9];
+    S numbers[9][LANES];
     for (int l = 0; l < LANES; l++)
       for (int i = 0; i < 9; i++)
-        LANE(R[i], l) = E->node_frame[9 * (size_t)tet[j * LANES + l] + (size_t)i];
+        numbers[i][l] = E->node_frame[9 * (size_t)tet[j * LANES + l] + (size_t)i];
+    memcpy(R, numbers, sizeof R);
     for (int i = 0; i < 3; i++) g[i] = j == 0 ? -(G[i] + G[3 + i] + G[6 + i]) : G[3 * (j - 1) + i];
     for (int i = 0; i < 9; i++) P[i] = LIT(0);
     if (F) {

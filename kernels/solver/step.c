@@ -70,50 +70,71 @@ static void right_side(struct cb_stepper *s, const void *x, const void *velocity
   filter(s, b);
 }
 
-static S dot(size_t n, const S *restrict a, const S *restrict b) {
-  S sum = 0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
+/* Sums are kept apart by coordinate, so that they do not wait for each other and
+ * nodes are added as vectors; in double, for float too. */
+struct sum {
+  ACC part[STRIDE];
+};
+
+static inline ACC total(const struct sum *s) {
+  ACC sum = s->part[0];
+  for (int i = 1; i < STRIDE; i++) sum += s->part[i];
   return sum;
 }
 
-/* y := filtered A p, and p . y. */
-static S apply(const struct cb_stepper *s, const S *restrict p, S *restrict y) {
+static ACC norm2(const struct cb_stepper *s, const S *restrict a) {
+  struct sum sum = {{0}};
+  for (size_t n = 0; n < LENGTH(s); n += STRIDE)
+    for (size_t i = 0; i < STRIDE; i++) sum.part[i] += (ACC)a[n + i] * (ACC)a[n + i];
+  return total(&sum);
+}
+
+/* y := filtered A p; returns p . y. */
+static ACC apply(const struct cb_stepper *s, const S *restrict p, S *restrict y) {
   const S *restrict m = s->mass;
   const S factor = (S)(1 + s->parameters.h * s->parameters.beta);
-  S sum = 0;
+  struct sum sum = {{0}};
   cb_operator_product(s->op, p, y);
   for (size_t n = 0; n < s->nodes; n++) {
-    S mass = factor * m[n], keep = s->fixed[n] ? (S)0 : (S)1;
-    for (size_t i = STRIDE * n; i < STRIDE * n + 3; i++) {
-      y[i] = keep * (y[i] + mass * p[i]);
-      sum += p[i] * y[i];
+    const S mass = factor * m[n], keep = s->fixed[n] ? (S)0 : (S)1;
+    const S *restrict pn = p + STRIDE * n;
+    S *restrict yn = y + STRIDE * n;
+    for (size_t i = 0; i < STRIDE; i++) {
+      yn[i] = keep * (yn[i] + mass * pn[i]);
+      sum.part[i] += (ACC)pn[i] * (ACC)yn[i];
     }
   }
-  return sum;
+  return total(&sum);
+}
+
+/* dv += alpha p, r -= alpha y; returns r . r. */
+static ACC descend(const struct cb_stepper *s, S alpha, const S *restrict p, const S *restrict y,
+                   S *restrict dv, S *restrict r) {
+  struct sum sum = {{0}};
+  for (size_t n = 0; n < LENGTH(s); n += STRIDE)
+    for (size_t i = n; i < n + STRIDE; i++) {
+      dv[i] += alpha * p[i];
+      r[i] -= alpha * y[i];
+      sum.part[i - n] += (ACC)r[i] * (ACC)r[i];
+    }
+  return total(&sum);
 }
 
 /* Once the residual is gone to rounding, or p . A p underflows (float), the work
  * goes on with zero steps: every iteration costs the same, and no 0/0 arises. */
 static void solve(struct cb_stepper *s) {
-  size_t n = LENGTH(s);
   S *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
   S *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
   const S *restrict b = s->vector[STEPPER_B];
-  for (size_t i = 0; i < n; i++) dv[i] = 0, r[i] = p[i] = b[i];
+  for (size_t i = 0; i < LENGTH(s); i++) dv[i] = 0, r[i] = p[i] = b[i];
   const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
-  S rr = dot(n, r, r), enough = rr * (S)(roundoff * roundoff);
+  ACC rr = norm2(s, r), enough = rr * (ACC)(roundoff * roundoff);
   for (size_t k = 0; k < s->parameters.iterations; k++) {
-    S py = apply(s, p, y);
-    int finished = !(rr > enough) || py == 0;
-    S alpha = finished ? 0 : rr / py;
-    S next = 0;
-    for (size_t i = 0; i < n; i++) {
-      dv[i] += alpha * p[i];
-      r[i] -= alpha * y[i];
-      next += r[i] * r[i];
-    }
-    S beta = finished ? 0 : next / rr;
-    for (size_t i = 0; i < n; i++) p[i] = r[i] + beta * p[i];
+    const ACC py = apply(s, p, y);
+    const int finished = !(rr > enough) || py == 0;
+    const ACC next = descend(s, finished ? (S)0 : (S)(rr / py), p, y, dv, r);
+    const S beta = finished ? (S)0 : (S)(next / rr);
+    for (size_t i = 0; i < LENGTH(s); i++) p[i] = r[i] + beta * p[i];
     rr = next;
   }
 }

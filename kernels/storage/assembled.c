@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/storage/blocks.h"
+#include "kernels/storage/products.h"
 
 /* Block (row, slot) of the values: its nine numbers go to first[r*step + c]. */
 static S *block_at(const struct cb_elements *E, bool blocked, uint32_t row, uint32_t slot,

@@ -28,9 +28,18 @@ typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T 
       }                                                                                            \
   } while (0)
 
-/* ---- ebe-matrix: state = six blocks --------------------------------------- */
+/* Update of ebe-matrix (state = six blocks), and of csr and bcsr; products: the
+ * blocks come as edge products. */
+DRIVER void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+                                blocks_pack_fn *blocks, int products);
+DRIVER void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+                                   blocks_pack_fn *blocks, int products);
 
-INLINE void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+/* The values of csr or bcsr from the edge sums. */
+void CB_NAME(cb_assemble)(struct cb_elements *E, bool products);
+
+#if CB_LANES == 1 || defined(CB_DEFINE_DRIVERS)
+DRIVER void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, double h, S *out,
                                 blocks_pack_fn *blocks, int products) {
   clear_vector(E, out);
   for (size_t p = 0; p < E->packs; p++) {
@@ -51,35 +60,8 @@ INLINE void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, d
   }
 }
 
-/* For each edge (i, j): f_i += K_ij (u_j - u_i), f_j -= K_ij^T (u_j - u_i). */
-INLINE void matrix_product(const struct cb_elements *E, const T *rest, const T *K, const T *u,
-                           T *f) {
-  (void)E, (void)rest;
-  T y[3];
-  for (int n = 0; n < 3; n++) { /* edges from a: only the far end is kept */
-    apply3_transposed(K + 9 * n, u + 3 * n, y);
-    for (int i = 0; i < 3; i++) f[3 * n + i] = -y[i];
-  }
-  for (int n = 3; n < 6; n++) {
-    int p = cb_tet_edge[n][0] - 1, q = cb_tet_edge[n][1] - 1;
-    T d[3];
-    for (int i = 0; i < 3; i++) d[i] = u[3 * q + i] - u[3 * p + i];
-    apply3(K + 9 * n, d, y);
-    for (int i = 0; i < 3; i++) f[3 * p + i] = f[3 * p + i] + y[i];
-    apply3_transposed(K + 9 * n, d, y);
-    for (int i = 0; i < 3; i++) f[3 * q + i] = f[3 * q + i] - y[i];
-  }
-}
-
-/* ---- assembled ------------------------------------------------------------ */
-
-/* The values of csr or bcsr from the edge sums. */
-void CB_NAME(cb_assemble)(struct cb_elements *E, bool products);
-void CB_NAME(cb_product_csr)(const struct cb_elements *E, const void *u, void *y);
-void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, const void *u, void *y);
-
 /* Sums X[6][9] into the edges, turned where the edge runs from high to low node. */
-PACK_LINKAGE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
+INLINE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
   const uint32_t *edge_of = E->pattern->edge_of + pack * 6 * LANES;
   S numbers[54 * LANES]; /* [6][9][LANES] */
   memcpy(numbers, X, sizeof numbers);
@@ -88,12 +70,11 @@ PACK_LINKAGE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
       uint32_t edge = edge_of[n * LANES + l];
       S *sum = E->edge_sum + 9 * (size_t)(edge >> 1);
       const S *block = numbers + 9 * LANES * n + l;
-      for (size_t i = 0; i < 9; i++)
-        sum[i] += block[LANES * (edge & 1 ? i % 3 * 3 + i / 3 : i)];
+      for (size_t i = 0; i < 9; i++) sum[i] += block[LANES * (edge & 1 ? i % 3 * 3 + i / 3 : i)];
     }
 }
 
-INLINE void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+DRIVER void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
                                    blocks_pack_fn *blocks, int products) {
   clear_vector(E, out);
   for (size_t i = 0; i < 9 * E->pattern->edges; i++) E->edge_sum[i] = (S)0;
@@ -111,5 +92,6 @@ INLINE void drive_update_assembled(struct cb_elements *E, const S *x, const S *v
   }
   CB_NAME(cb_assemble)(E, products);
 }
+#endif
 
 #endif

@@ -41,7 +41,23 @@ INLINE void clear_vector(const struct cb_elements *E, S *y) {
   for (size_t i = 0; i < STRIDE * E->nodes; i++) y[i] = (S)0;
 }
 
-INLINE void drive_update(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+/* The loops of one element are inlined into each model; those of many elements
+ * are one copy an arithmetic (drivers.c), which calls the work of a pack. */
+#if CB_LANES == 1
+#define DRIVER INLINE
+#else
+#define DRIVER
+#define drive_update CB_NAME(cb_drive_update)
+#define drive_product CB_NAME(cb_drive_product)
+#define drive_update_matrix CB_NAME(cb_drive_update_matrix)
+#define drive_update_assembled CB_NAME(cb_drive_update_assembled)
+#endif
+DRIVER void drive_update(struct cb_elements *E, const S *x, const S *v, double h, S *out,
+                         update_pack_fn *update);
+DRIVER void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product);
+
+#if CB_LANES == 1 || defined(CB_DEFINE_DRIVERS)
+DRIVER void drive_update(struct cb_elements *E, const S *x, const S *v, double h, S *out,
                          update_pack_fn *update) {
   clear_vector(E, out);
   for (size_t p = 0; p < E->packs; p++) {
@@ -56,7 +72,7 @@ INLINE void drive_update(struct cb_elements *E, const S *x, const S *v, double h
   }
 }
 
-INLINE void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
+DRIVER void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
   clear_vector(E, y);
   for (size_t p = 0; p < E->packs; p++) {
     const uint32_t *tet = E->tet + p * 4 * LANES;
@@ -67,5 +83,6 @@ INLINE void drive_product(const struct cb_elements *E, const S *u, S *y, product
     scatter_edges(y, tet, live_lanes(E, p), f);
   }
 }
+#endif
 
 #endif
