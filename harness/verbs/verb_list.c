@@ -8,6 +8,14 @@ static const char doc[] =
     "List the variants: model (frame and strain-displacement policy), storage (how the stiffness "
     "product is done) and arithmetic.";
 
+/* The arithmetics that this processor cannot run, and why. */
+static void print_absent(void) {
+  for (const struct cb_arithmetic *const *a = cb_arithmetics; *a; a++)
+    if (!cb_arithmetic_runs(*a))
+      printf("%s is not listed: it needs %s, which this processor does not have\n", (*a)->name,
+             (*a)->needs);
+}
+
 static enum cb_status run(int argc, char **argv) {
   struct cb_options o;
   enum cb_status status =
@@ -27,6 +35,7 @@ static enum cb_status run(int argc, char **argv) {
     cb_table_text(table, v->model->source);
   }
   status = cb_table_print(table, o.format, stdout);
+  if (o.format == CB_TABLE) print_absent();
   cb_table_free(table);
   return status;
 }
