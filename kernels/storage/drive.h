@@ -41,6 +41,19 @@ INLINE void clear_vector(const struct cb_elements *E, S *y) {
   for (size_t i = 0; i < STRIDE * E->nodes; i++) y[i] = (S)0;
 }
 
+/* y := the product over all packs; inlined wherever it stands. */
+INLINE void product_loop(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
+  clear_vector(E, y);
+  for (size_t p = 0; p < E->packs; p++) {
+    const uint32_t *tet = E->tet + p * 4 * LANES;
+    T du[9], f[9];
+    STAGE(STAGE_PRODUCT);
+    gather_edges(u, tet, du);
+    product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
+    scatter_edges(y, tet, live_lanes(E, p), f);
+  }
+}
+
 /* The loops of one element are inlined into each model; those of many elements
  * are one copy an arithmetic (drivers.c), which calls the work of a pack. */
 #if CB_LANES == 1
@@ -73,15 +86,7 @@ DRIVER void drive_update(struct cb_elements *E, const S *x, const S *v, double h
 }
 
 DRIVER void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
-  clear_vector(E, y);
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T du[9], f[9];
-    STAGE(STAGE_PRODUCT);
-    gather_edges(u, tet, du);
-    product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
-    scatter_edges(y, tet, live_lanes(E, p), f);
-  }
+  product_loop(E, u, y, product);
 }
 #endif
 

@@ -7,27 +7,14 @@
 #include "kernels/storage/drive.h"
 #include "kernels/storage/gradients.h"
 
-typedef void shared_pack_fn(const struct cb_elements *E, const T *state, const T *u, T *f);
-
-INLINE void run(const struct cb_elements *E, const S *u, S *y, shared_pack_fn *product) {
-  clear_vector(E, y);
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T du[9], f[9];
-    STAGE(STAGE_PRODUCT);
-    gather_edges(u, tet, du);
-    product(E, E->state + p * E->state_numbers, du, f);
-    scatter_edges(y, tet, live_lanes(E, p), f);
-  }
-}
-
-INLINE void by_gradients(const struct cb_elements *E, const T *w, const T *u, T *f) {
+INLINE void by_gradients(const struct cb_elements *E, const T *rest, const T *w, const T *u, T *f) {
+  (void)rest;
   gradients_product(E->k, w, u, f);
 }
 
 /* For each edge (i, j): f_i += K_ij (u_j - u_i), f_j -= K_ij^T (u_j - u_i). */
-INLINE void by_matrix(const struct cb_elements *E, const T *K, const T *u, T *f) {
-  (void)E;
+INLINE void by_matrix(const struct cb_elements *E, const T *rest, const T *K, const T *u, T *f) {
+  (void)E, (void)rest;
   T y[3];
   for (int n = 0; n < 3; n++) { /* edges from a: only the far end is kept */
     apply3_transposed(K + 9 * n, u + 3 * n, y);
@@ -45,9 +32,9 @@ INLINE void by_matrix(const struct cb_elements *E, const T *K, const T *u, T *f)
 }
 
 void CB_NAME(cb_product_gradients)(const struct cb_elements *E, const void *u, void *y) {
-  run(E, u, y, by_gradients);
+  product_loop(E, u, y, by_gradients);
 }
 
 void CB_NAME(cb_product_matrix)(const struct cb_elements *E, const void *u, void *y) {
-  run(E, u, y, by_matrix);
+  product_loop(E, u, y, by_matrix);
 }
