@@ -5,7 +5,8 @@ BUILD   = build
 OPT     = -O3
 WARN    = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror=implicit -Wno-psabi
 # No -ffast-math: it removes operations. No contraction: f64 rounds as `counted` counts.
-CFLAGS  = -std=gnu11 $(OPT) -g1 -fno-math-errno -ffp-contract=off $(WARN) $(WERROR) $(SANFLAGS)
+OPENMP  = -fopenmp
+CFLAGS  = -std=gnu11 $(OPT) -g1 -fno-math-errno -ffp-contract=off $(WARN) $(WERROR) $(SANFLAGS) $(OPENMP)
 INCLUDES = -I. -I/usr/include/suitesparse -I/usr/local/include/suitesparse
 CPPFLAGS = $(INCLUDES) -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"'
 LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread
@@ -25,8 +26,9 @@ FIRST  := $(filter setup clean,$(MAKECMDGOALS))
 # One source, many arithmetics: each file of $(GENERIC) is compiled once per
 # name, with the scalar and the lanes below. `counted` is -O0, so that what is
 # counted is what is written: nothing folded, merged or moved between stages.
-ARITHMETICS = f64 f64x4 f64x8 f32x8 f32x16 counted
+ARITHMETICS = f64 f32 f64x4 f64x8 f32x8 f32x16 counted
 ARITH_f64     = -DCB_SCALAR=double -DCB_LANES=1 -DCB_SUFFIX=f64
+ARITH_f32     = -DCB_SCALAR=float -DCB_LANES=1 -DCB_SUFFIX=f32
 ARITH_counted = -DCB_SCALAR=__float128 -DCB_LANES=1 -DCB_SUFFIX=counted -DCB_COUNTED -O0
 # Lanes are compiled for the instruction set that has them and run where the
 # processor has it; on another architecture the compiler splits them into what

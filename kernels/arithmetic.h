@@ -60,6 +60,7 @@ INLINE T splat(S a) { return a; }
 INLINE T SQRT(T a) { return scalar_sqrt(a); }
 INLINE T SELECT(MASK m, T a, T b) { return m ? a : b; }
 INLINE int ANY(MASK m) { return m; }
+INLINE MASK load_bytes(const uint8_t *b) { return *b; }
 #else
 typedef S T __attribute__((vector_size(sizeof(S) * CB_LANES)));
 typedef __typeof__((T){0} < (T){0}) MASK;
@@ -75,6 +76,12 @@ INLINE T SQRT(T a) {
   return t;
 }
 INLINE T SELECT(MASK m, T a, T b) { return (T)((m & (MASK)a) | (~m & (MASK)b)); }
+/* One number a lane, from LANES bytes. */
+INLINE MASK load_bytes(const uint8_t *b) {
+  uint8_t bytes __attribute__((vector_size(CB_LANES)));
+  __builtin_memcpy(&bytes, b, sizeof bytes);
+  return __builtin_convertvector(bytes, MASK);
+}
 INLINE int ANY(MASK m) {
   int any = 0;
   for (int l = 0; l < LANES; l++) any |= m[l] != 0;

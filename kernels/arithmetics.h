@@ -11,7 +11,8 @@
 
 struct cb_element_functions {
   enum cb_status (*create)(const struct cb_variant *, const struct cb_mesh *,
-                           const struct cb_material *, double c, struct cb_elements **);
+                           const struct cb_material *, double c, struct cb_team *,
+                           struct cb_elements **);
   void (*free)(struct cb_elements *);
   void (*reset)(struct cb_elements *);
   size_t (*bytes)(const struct cb_elements *);
@@ -25,15 +26,17 @@ struct cb_step_functions {
                            const double *mass, const uint8_t *fixed, size_t nodes,
                            struct cb_stepper **);
   void (*free)(struct cb_stepper *);
-  void (*right_side)(struct cb_stepper *, const void *x, const void *v, const void *f_ext);
-  void (*solve)(struct cb_stepper *);
-  void (*advance)(struct cb_stepper *, void *x, void *v);
+  /* One thread's part of each, by all of the operator's team at once: */
+  void (*right_side)(struct cb_stepper *, size_t thread, const void *x, const void *v,
+                     const void *f_ext);
+  void (*solve)(struct cb_stepper *, size_t thread);
+  void (*advance)(struct cb_stepper *, size_t thread, void *x, void *v);
 };
 
 /* Declares what the objects of one arithmetic define. */
 #define CB_DECLARE_ARITHMETIC(A)                                                                   \
   enum cb_status cb_elements_create_##A(const struct cb_variant *, const struct cb_mesh *,         \
-                                        const struct cb_material *, double,                        \
+                                        const struct cb_material *, double, struct cb_team *,      \
                                         struct cb_elements **);                                    \
   void cb_elements_free_##A(struct cb_elements *);                                                 \
   void cb_elements_reset_##A(struct cb_elements *);                                                \

@@ -1,14 +1,17 @@
 /* elements.h - one arithmetic's view of all elements of a mesh: the arrays that
- * the storages run over. Elements come in packs of LANES; a number of a pack is
- * one T. In the last pack the missing elements repeat the last one: they are
- * computed and never scattered.
+ * the storages run over. Elements come in packs of LANES (kernels/packs.h); a
+ * number of LANES elements is one T. Lanes without an element of their own repeat
+ * another one: they are computed and never scattered.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_ELEMENTS_H
 #define CB_ELEMENTS_H
 
+#include <stdatomic.h>
+
 #include "kernels/arithmetic.h"
 #include "kernels/kernel.h"
+#include "kernels/packs.h"
 #include "kernels/pattern.h"
 
 /* Which strain-displacement matrix. Every one is a choice of gradients w_j of
@@ -44,15 +47,28 @@ enum {
   /* ebe-paper with precomputed B appends B0 (12 numbers, or 9 for qr) */
 };
 
+/* Which turn of adding to the nodes a thread is in, and has ended the part of that
+ * its successors wait for; see kernels/packs.h. */
+struct cb_turn {
+  _Alignas(64) atomic_size_t done;
+  size_t begun;
+};
+
 struct cb_elements {
-  size_t nodes, tets, packs;
-  uint32_t *tet; /* [packs][4][LANES] */
-  T *rest;       /* [packs][rest_numbers] */
-  T *memory;     /* [packs][memory_numbers], zero = cold */
-  T *state;      /* [packs][state_numbers] */
+  size_t nodes, tets;
+  int policy, axes;
+  struct cb_packs *packs;
+  struct cb_turn *turn; /* [threads] */
+  struct cb_team *team; /* not owned */
+  S *X;                 /* rest positions, a node vector; rest data come from it ... */
+  T *rest;              /* ... or are kept, [slots][rest_numbers]; else NULL */
+  T *memory;            /* [slots][memory_numbers], zero = cold */
+  T *state;             /* [slots][state_numbers] */
   size_t rest_numbers, memory_numbers, state_numbers;
-  size_t bytes; /* of every array here */
-  T k;          /* lambda/mu = 2 nu/(1 - 2 nu) */
+  size_t bytes;      /* of every array here but X and x */
+  T k;               /* lambda/mu = 2 nu/(1 - 2 nu) */
+  T root, inverse_c; /* sqrt(c mu share / 6), 1/c, for rest data made of X */
+  S *x;              /* ebe-recompute: positions of the last update, a node vector */
   /* assembled storages */
   struct cb_pattern *pattern;
   S *edge_sum;                          /* [edges][9] */
@@ -63,10 +79,5 @@ struct cb_elements {
   S *node_frame; /* [nodes][9] */
   S *node_sum;   /* [nodes][9] */
 };
-
-INLINE size_t live_lanes(const struct cb_elements *E, size_t pack) {
-  size_t rest = E->tets - pack * LANES;
-  return rest < LANES ? rest : LANES;
-}
 
 #endif

@@ -67,11 +67,13 @@ void cb_mesh_mass(const struct cb_mesh *mesh, double density, double *mass);
 
 /* How the stiffness product of each conjugate gradient iteration is done. */
 enum cb_storage {
-  CB_EBE_PAPER,  /* unassembled: R, B, D apart, the paper's chain */
-  CB_EBE,        /* unassembled: world-frame gradients, no frame stored */
-  CB_EBE_MATRIX, /* unassembled: the element's stiffness matrix */
-  CB_CSR,        /* assembled, scalar rows */
-  CB_BCSR,       /* assembled, 3x3 blocks */
+  CB_EBE_PAPER,     /* unassembled: R, B, D apart, the paper's chain */
+  CB_EBE,           /* unassembled: world-frame gradients, no frame stored */
+  CB_EBE_CLUSTER,   /* the same in clusters that share their nodes */
+  CB_EBE_RECOMPUTE, /* in clusters, gradients made of the positions in each product */
+  CB_EBE_MATRIX,    /* unassembled: the element's stiffness matrix */
+  CB_CSR,           /* assembled, scalar rows */
+  CB_BCSR,          /* assembled, 3x3 blocks */
   CB_STORAGES
 };
 extern const char *const cb_storage_name[CB_STORAGES];
@@ -93,14 +95,17 @@ enum cb_law {
 extern const char *const cb_law_name[CB_LAWS];
 #define CB_KEEPS(law) (1u << (law))
 
+struct cb_team;     /* kernels/team.h */
 struct cb_elements; /* one arithmetic's element arrays; kernels/elements.h */
 
-/* out := h f(x) - c K(x) v over all elements (v NULL: out := h f(x)). All
- * vectors are node vectors of the arithmetic; out must not overlap x or v. */
-typedef void cb_update_fn(struct cb_elements *elements, const void *x, const void *v, double h,
-                          void *out);
-/* y := c K u with K from the last update; y must not overlap u. */
-typedef void cb_product_fn(const struct cb_elements *elements, const void *u, void *y);
+/* One thread's part of out += h f(x) - c K(x) v over all elements (v NULL: out +=
+ * h f(x)). All vectors are node vectors of the arithmetic; out must not overlap x
+ * or v. Run by all threads of the operator's team at once. */
+typedef void cb_update_fn(struct cb_elements *elements, size_t thread, const void *x, const void *v,
+                          double h, void *out);
+/* One thread's part of y += c K u with K from the last update; y must not overlap u. */
+typedef void cb_product_fn(const struct cb_elements *elements, size_t thread, const void *u,
+                           void *y);
 
 /* What a storage of a model is made of; .update NULL: not offered. */
 struct cb_form {
@@ -117,14 +122,15 @@ struct cb_model {
   uint8_t policy, axes;                /* enums of kernels/elements.h */
   uint8_t memory_numbers;              /* kept per element from one update to the next */
   bool node_frames;                    /* one frame per node (node-warp) */
+  bool keeps_rest;                     /* its products read rest data: they are stored */
   struct cb_form form[CB_STORAGES][2]; /* [storage][orthotropic] */
 };
 
 /* One arithmetic: its scalar, its lanes, its models. */
 struct cb_arithmetic {
   const char *name;
-  const char *needs;                  /* instruction set: "", "avx2", "avx512" */
-  const char *flags;                  /* compiled with, beside the program's */
+  const char *needs;                    /* instruction set: "", "avx2", "avx512" */
+  const char *flags;                    /* compiled with, beside the program's */
   size_t scalar_bytes, lanes, stride;   /* stride: scalars per node */
   double roundoff;                      /* unit roundoff of the scalar */
   const struct cb_model *const *models; /* NULL-terminated */
@@ -156,16 +162,19 @@ const struct cb_variant *cb_variant_find(const char *name);
 struct cb_operator;
 
 /* Build every array; nothing is allocated afterwards. c scales the product
- * (c K). CB_MEMORY; CB_INPUT if the variant does not offer this material, c is
- * not > 0 or the mesh has no tetrahedra. Free with cb_operator_free (NULL
- * allowed). The mesh and the material may go away, the variant (cb_variants:
+ * (c K). Everything that the operator and its stepper do is done by so many
+ * threads: 1 to 64 (kernels/team.h); for the same number of them results are the
+ * same to the last bit. CB_MEMORY; CB_INPUT if the variant does not offer this
+ * material, c is not > 0, the mesh has no tetrahedra, or threads are out of range. Free with
+ * cb_operator_free (NULL allowed). The mesh and the material may go away, the variant (cb_variants:
  * static) may not. */
 enum cb_status cb_operator_create(const struct cb_variant *variant, const struct cb_mesh *mesh,
-                                  const struct cb_material *material, double c,
+                                  const struct cb_material *material, double c, size_t threads,
                                   struct cb_operator **out);
 void cb_operator_free(struct cb_operator *op);
 
-/* See cb_update_fn, cb_product_fn. */
+/* out := h f(x) - c K(x) v (v NULL: h f(x)); y := c K u. Whole vectors, by all
+ * threads; see cb_update_fn, cb_product_fn. */
 void cb_operator_update(struct cb_operator *op, const void *x, const void *v, double h, void *out);
 void cb_operator_product(const struct cb_operator *op, const void *u, void *y);
 /* Forget what warm-started frames remember: the next update starts cold. */
@@ -174,6 +183,12 @@ void cb_operator_reset(struct cb_operator *op);
 size_t cb_operator_bytes(const struct cb_operator *op);
 const struct cb_variant *cb_operator_variant(const struct cb_operator *op);
 size_t cb_operator_nodes(const struct cb_operator *op);
+struct cb_team *cb_operator_team(const struct cb_operator *op);
+/* One thread's part of an update or a product, for a stepper that runs on the same
+ * team: out and y are added to (cb_update_fn, cb_product_fn). */
+void cb_operator_update_part(struct cb_operator *op, size_t thread, const void *x, const void *v,
+                             double h, void *out);
+void cb_operator_product_part(const struct cb_operator *op, size_t thread, const void *u, void *y);
 
 /* Block pattern of a csr or bcsr operator, and its numbers as 3x3 blocks (for
  * the direct solver): *rows = nodes, row_start[nodes+1], column[blocks].

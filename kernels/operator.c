@@ -6,30 +6,32 @@
 #include <string.h>
 
 #include "kernels/arithmetics.h"
+#include "kernels/team.h"
 
 struct cb_operator {
   const struct cb_variant *variant;
   struct cb_form form;
   struct cb_elements *elements;
-  size_t nodes, vector_bytes;
+  struct cb_team *team;
+  size_t nodes, node_bytes;
   bool slack; /* no stiffness */
 };
 
 enum cb_status cb_operator_create(const struct cb_variant *variant, const struct cb_mesh *mesh,
-                                  const struct cb_material *material, double c,
+                                  const struct cb_material *material, double c, size_t threads,
                                   struct cb_operator **out) {
+  const struct cb_arithmetic *a = variant->arithmetic;
   struct cb_form form = variant->model->form[variant->storage][material->orthotropic];
   if (!form.update || !(c > 0) || mesh->tets == 0) return CB_INPUT;
   struct cb_operator *op = calloc(1, sizeof *op);
   if (!op) return CB_MEMORY;
-  *op = (struct cb_operator){.variant = variant, .form = form};
+  *op = (struct cb_operator){.variant = variant, .form = form, .nodes = mesh->nodes};
   op->slack = !material->orthotropic && material->young == 0;
-  op->nodes = mesh->nodes;
-  op->vector_bytes = mesh->nodes * variant->arithmetic->stride * variant->arithmetic->scalar_bytes;
-  enum cb_status status =
-      variant->arithmetic->elements->create(variant, mesh, material, c, &op->elements);
+  op->node_bytes = a->stride * a->scalar_bytes;
+  enum cb_status status = cb_team_create(threads, &op->team);
+  if (!status) status = a->elements->create(variant, mesh, material, c, op->team, &op->elements);
   if (status)
-    free(op);
+    cb_operator_free(op);
   else
     *out = op;
   return status;
@@ -38,21 +40,48 @@ enum cb_status cb_operator_create(const struct cb_variant *variant, const struct
 void cb_operator_free(struct cb_operator *op) {
   if (!op) return;
   op->variant->arithmetic->elements->free(op->elements);
+  cb_team_free(op->team);
   free(op);
 }
 
-void cb_operator_update(struct cb_operator *op, const void *x, const void *v, double h, void *out) {
-  if (op->slack)
-    memset(out, 0, op->vector_bytes);
+void cb_operator_update_part(struct cb_operator *op, size_t thread, const void *x, const void *v,
+                             double h, void *out) {
+  if (!op->slack) op->form.update(op->elements, thread, x, v, h, out);
+}
+
+void cb_operator_product_part(const struct cb_operator *op, size_t thread, const void *u, void *y) {
+  if (!op->slack) op->form.product(op->elements, thread, u, y);
+}
+
+/* A whole vector, made by the team: zero, then its parts. */
+struct whole {
+  struct cb_operator *update; /* or NULL */
+  const struct cb_operator *op;
+  const void *x, *v;
+  double h;
+  void *out;
+};
+
+static void whole_part(void *context, size_t thread) {
+  const struct whole *w = context;
+  size_t first, last;
+  cb_team_share(w->op->nodes, cb_team_threads(w->op->team), thread, &first, &last);
+  memset((char *)w->out + first * w->op->node_bytes, 0, (last - first) * w->op->node_bytes);
+  cb_team_barrier(w->op->team);
+  if (w->update)
+    cb_operator_update_part(w->update, thread, w->x, w->v, w->h, w->out);
   else
-    op->form.update(op->elements, x, v, h, out);
+    cb_operator_product_part(w->op, thread, w->x, w->out);
+}
+
+void cb_operator_update(struct cb_operator *op, const void *x, const void *v, double h, void *out) {
+  struct whole w = {.update = op, .op = op, .x = x, .v = v, .h = h, .out = out};
+  cb_team_run(op->team, whole_part, &w);
 }
 
 void cb_operator_product(const struct cb_operator *op, const void *u, void *y) {
-  if (op->slack)
-    memset(y, 0, op->vector_bytes);
-  else
-    op->form.product(op->elements, u, y);
+  struct whole w = {.op = op, .x = u, .out = y};
+  cb_team_run(op->team, whole_part, &w);
 }
 
 void cb_operator_reset(struct cb_operator *op) {
@@ -66,6 +95,10 @@ size_t cb_operator_bytes(const struct cb_operator *op) {
 const struct cb_variant *cb_operator_variant(const struct cb_operator *op) { return op->variant; }
 
 size_t cb_operator_nodes(const struct cb_operator *op) { return op->nodes; }
+
+struct cb_team *cb_operator_team(const struct cb_operator *op) {
+  return op->team;
+}
 
 void cb_operator_pattern(const struct cb_operator *op, const uint32_t **row_start,
                          const uint32_t **column) {

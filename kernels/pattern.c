@@ -49,12 +49,11 @@ static void fill_rows(struct cb_pattern *p) {
   }
 }
 
-static void map_elements(const struct cb_mesh *mesh, const uint64_t *keys, size_t lanes,
-                         struct cb_pattern *p) {
-  size_t packs = (mesh->tets + lanes - 1) / lanes;
-  for (size_t n = 0; n < packs * lanes; n++) {
-    size_t t = n < mesh->tets ? n : mesh->tets - 1;
-    const uint32_t *tet = mesh->tet + 4 * t;
+static void map_elements(const struct cb_packs *packs, const uint64_t *keys, struct cb_pattern *p) {
+  const size_t lanes = packs->lanes;
+  for (size_t n = 0; n < packs->packs * lanes; n++) {
+    uint32_t tet[4];
+    for (size_t j = 0; j < 4; j++) tet[j] = packs->node[(n / lanes * 4 + j) * lanes + n % lanes];
     for (int e = 0; e < 6; e++) {
       uint64_t key = edge_key(tet, e);
       const uint64_t *found = bsearch(&key, keys, p->edges, sizeof *keys, by_value);
@@ -65,7 +64,7 @@ static void map_elements(const struct cb_mesh *mesh, const uint64_t *keys, size_
   }
 }
 
-enum cb_status cb_pattern_create(const struct cb_mesh *mesh, size_t lanes,
+enum cb_status cb_pattern_create(const struct cb_mesh *mesh, const struct cb_packs *packs,
                                  struct cb_pattern **out) {
   enum cb_status status = CB_MEMORY;
   struct cb_pattern *p = calloc(1, sizeof *p);
@@ -78,7 +77,7 @@ enum cb_status cb_pattern_create(const struct cb_mesh *mesh, size_t lanes,
     status = CB_INPUT;
     goto done;
   }
-  size_t mapped = (mesh->tets + lanes - 1) / lanes * lanes * 6;
+  size_t mapped = packs->packs * packs->lanes * 6;
   size_t counts[] = {p->nodes + 1, p->blocks, p->nodes, p->edges,
                      p->edges,     p->edges,  p->edges, mapped};
   uint32_t **arrays[] = {&p->row_start, &p->column, &p->diagonal, &p->upper,
@@ -91,7 +90,7 @@ enum cb_status cb_pattern_create(const struct cb_mesh *mesh, size_t lanes,
   for (size_t e = 0; e < p->edges; e++)
     p->low[e] = (uint32_t)(keys[e] >> 32), p->high[e] = (uint32_t)keys[e];
   fill_rows(p);
-  map_elements(mesh, keys, lanes, p);
+  map_elements(packs, keys, p);
   *out = p;
   p = NULL;
   status = CB_OK;

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "kernels/kernel.h"
+#include "kernels/packs.h"
 
 /* The six edges of a tetrahedron (a, b, c, d) = (0, 1, 2, 3). */
 static const uint8_t cb_tet_edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -25,9 +25,10 @@ struct cb_pattern {
   size_t bytes;
 };
 
-/* lanes: elements of a pack; the last pack repeats its last element. CB_MEMORY;
- * CB_INPUT when the blocks do not fit 32 bits. */
-enum cb_status cb_pattern_create(const struct cb_mesh *mesh, size_t lanes, struct cb_pattern **out);
+/* packs: of single tetrahedra. CB_MEMORY; CB_INPUT when the blocks do not fit 32
+ * bits. */
+enum cb_status cb_pattern_create(const struct cb_mesh *mesh, const struct cb_packs *packs,
+                                 struct cb_pattern **out);
 void cb_pattern_free(struct cb_pattern *p);
 
 #endif

@@ -8,15 +8,15 @@
 #include "kernels/arithmetics.h"
 
 CB_DECLARE_ARITHMETIC(f64)
+CB_DECLARE_ARITHMETIC(f32)
 CB_DECLARE_ARITHMETIC(f64x4)
 CB_DECLARE_ARITHMETIC(f64x8)
 CB_DECLARE_ARITHMETIC(f32x8)
 CB_DECLARE_ARITHMETIC(f32x16)
 CB_DECLARE_ARITHMETIC(counted)
 const struct cb_arithmetic *const cb_arithmetics[] = {
-    &cb_arithmetic_f64,   &cb_arithmetic_f64x4,  &cb_arithmetic_f64x8,
-    &cb_arithmetic_f32x8, &cb_arithmetic_f32x16, &cb_arithmetic_counted,
-    NULL};
+    &cb_arithmetic_f64,   &cb_arithmetic_f32,    &cb_arithmetic_f64x4,   &cb_arithmetic_f64x8,
+    &cb_arithmetic_f32x8, &cb_arithmetic_f32x16, &cb_arithmetic_counted, NULL};
 
 bool cb_arithmetic_runs(const struct cb_arithmetic *a) {
 #if defined(__x86_64__)
@@ -29,10 +29,13 @@ bool cb_arithmetic_runs(const struct cb_arithmetic *a) {
   return a->needs[0] == '\0';
 }
 
-const char *const cb_storage_name[CB_STORAGES] = {"ebe-paper", "ebe", "ebe-matrix", "csr", "bcsr"};
+const char *const cb_storage_name[CB_STORAGES] = {
+    "ebe-paper", "ebe", "ebe-cluster", "ebe-recompute", "ebe-matrix", "csr", "bcsr"};
 const char *const cb_storage_summary[CB_STORAGES] = {
     "unassembled: R, B and D apart, the paper's chain",
     "unassembled: world-frame gradients, no frame stored",
+    "the same in clusters of neighbours that share their nodes",
+    "in clusters, gradients made of positions in each product",
     "unassembled: element stiffness matrix, six 3x3 blocks",
     "assembled: compressed scalar rows",
     "assembled: compressed rows of 3x3 blocks",
@@ -40,7 +43,7 @@ const char *const cb_storage_summary[CB_STORAGES] = {
 const char *const cb_law_name[CB_LAWS] = {"rotation", "newton",    "euler",         "energy",
                                           "order",    "symmetric", "semi-definite", "tangent"};
 
-enum { MOST = 1024 };
+enum { MOST = 4096 };
 static struct cb_variant variants[MOST + 1];
 static size_t variant_count;
 

@@ -6,6 +6,7 @@
 #define CB_STAGES_H
 
 enum cb_stage {
+  STAGE_REST,     /* rest shape, where it is made of the nodes' rest positions */
   STAGE_SCATTER,  /* adding an element's result to its nodes */
   STAGE_FRAME,    /* edges, deformation gradient, frame */
   STAGE_B,        /* strain-displacement: the gradients that B is made of */

@@ -142,7 +142,7 @@ static void compute_forces(double f[3 * NODES]) {
   void *x = aligned_alloc(64, 64 * NODES), *y = aligned_alloc(64, 64 * NODES);
   assert_true(x && y && v->arithmetic->stride * v->arithmetic->scalar_bytes <= 64);
   assert_int_equal(cb_material_isotropic(1e5, 0.3, 1000, &material), CB_OK);
-  assert_int_equal(cb_operator_create(v, &m, &material, 1, &op), CB_OK);
+  assert_int_equal(cb_operator_create(v, &m, &material, 1, 1, &op), CB_OK);
   v->arithmetic->from_double(NODES, bent_xyz, x);
   cb_operator_update(op, x, NULL, 1, y);
   v->arithmetic->to_double(NODES, y, f);

@@ -27,11 +27,11 @@ enum { PATCH = 12 }; /* numbers in the vector of one tetrahedron */
 
 static size_t length(const struct cb_elements *elements) { return 3 * elements->nodes; }
 
-static void spoilt_update(struct cb_elements *elements, const void *x, const void *v, double h,
-                          void *out) {
+static void spoilt_update(struct cb_elements *elements, size_t thread, const void *x, const void *v,
+                          double h, void *out) {
   double *f = out;
   const double *p = x;
-  sound_form()->update(elements, x, v, h, out);
+  sound_form()->update(elements, thread, x, v, h, out);
   for (size_t i = 0; i < length(elements); i += PATCH) {
     double size = fabs(f[i]) + fabs(f[i + 1]) + fabs(f[i + 2]);
     if (fault == ADD_FORCE) f[i] += 1e-6 * size;
@@ -42,10 +42,11 @@ static void spoilt_update(struct cb_elements *elements, const void *x, const voi
   }
 }
 
-static void spoilt_product(const struct cb_elements *elements, const void *u, void *y) {
+static void spoilt_product(const struct cb_elements *elements, size_t thread, const void *u,
+                           void *y) {
   double *f = y;
   const double *p = u;
-  sound_form()->product(elements, u, y);
+  sound_form()->product(elements, thread, u, y);
   for (size_t i = 0; i < length(elements); i += PATCH) {
     if (fault == SKEW) f[i] += 1e-3 * p[i + 1], f[i + 1] -= 1e-3 * p[i];
     if (fault == NEGATE)

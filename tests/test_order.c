@@ -194,7 +194,7 @@ static void force(const char *model, const struct cb_mesh *mesh, const double *x
   const struct cb_material material = scene_material(false);
   struct cb_operator *op;
   void *shape = vector_new(a, mesh->nodes, x), *out = vector_new(a, mesh->nodes, NULL);
-  assert_int_equal(cb_operator_create(&variant, mesh, &material, 1, &op), CB_OK);
+  assert_int_equal(cb_operator_create(&variant, mesh, &material, 1, 1, &op), CB_OK);
   cb_operator_update(op, shape, NULL, 1, out);
   a->to_double(mesh->nodes, out, f);
   cb_operator_free(op);

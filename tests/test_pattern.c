@@ -50,11 +50,12 @@ static void check_edges(const struct cb_pattern *p) {
   }
 }
 
-/* Missing elements of the last pack repeat the last one. */
-static void check_map(const struct cb_pattern *p, const struct cb_mesh *mesh, size_t lanes) {
-  size_t packs = (mesh->tets + lanes - 1) / lanes;
-  for (size_t n = 0; n < packs * lanes; n++) {
-    const uint32_t *tet = mesh->tet + 4 * (n < mesh->tets ? n : mesh->tets - 1);
+/* Each lane's six edges are those of its four nodes. */
+static void check_map(const struct cb_pattern *p, const struct cb_packs *packs) {
+  const size_t lanes = packs->lanes;
+  for (size_t n = 0; n < packs->packs * lanes; n++) {
+    uint32_t tet[4];
+    for (size_t j = 0; j < 4; j++) tet[j] = packs->node[(n / lanes * 4 + j) * lanes + n % lanes];
     for (size_t k = 0; k < 6; k++) {
       uint32_t code = p->edge_of[(n / lanes * 6 + k) * lanes + n % lanes], edge = code / 2;
       uint32_t from = tet[cb_tet_edge[k][0]], to = tet[cb_tet_edge[k][1]];
@@ -65,6 +66,16 @@ static void check_map(const struct cb_pattern *p, const struct cb_mesh *mesh, si
   }
 }
 
+static struct cb_pattern *pattern_new(const struct cb_mesh *mesh, size_t lanes) {
+  struct cb_packs *packs;
+  struct cb_pattern *p;
+  assert_int_equal(cb_packs_create(mesh, lanes, 1, false, &packs), CB_OK);
+  assert_int_equal(cb_pattern_create(mesh, packs, &p), CB_OK);
+  check_map(p, packs);
+  cb_packs_free(packs);
+  return p;
+}
+
 static void pattern_is_who_shares_an_element(void **state) {
   (void)state;
   gsl_rng *rng = scene_rng();
@@ -72,11 +83,9 @@ static void pattern_is_who_shares_an_element(void **state) {
     for (int kind = 0; kind < SCENES; kind++)
       for (size_t lanes = 1; lanes <= 8; lanes *= 2) {
         struct scene s = scene_new(rng, (enum scene_kind)kind);
-        struct cb_pattern *p;
-        assert_int_equal(cb_pattern_create(&s.mesh, lanes, &p), CB_OK);
+        struct cb_pattern *p = pattern_new(&s.mesh, lanes);
         check_rows(p, &s.mesh);
         check_edges(p);
-        check_map(p, &s.mesh, lanes);
         cb_pattern_free(p);
         scene_free(&s);
       }
@@ -87,9 +96,8 @@ static void pattern_is_who_shares_an_element(void **state) {
 static void a_node_inside_the_grid_has_eighteen_neighbours(void **state) {
   (void)state;
   struct cb_mesh mesh;
-  struct cb_pattern *p;
   assert_int_equal(cb_mesh_grid(4, 4, 4, 1, &mesh), CB_OK);
-  assert_int_equal(cb_pattern_create(&mesh, 1, &p), CB_OK);
+  struct cb_pattern *p = pattern_new(&mesh, 1);
   size_t inside = 0;
   for (size_t i = 0; i < mesh.nodes; i++) {
     bool boundary = false;

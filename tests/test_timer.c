@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "harness/progress.h"
 #include "harness/measure/timer.h"
+#include "harness/progress.h"
 
 enum { SUBJECTS = 3, LOG = 4096 };
 

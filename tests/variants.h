@@ -63,7 +63,7 @@ static inline void run_open(struct run *r, const struct scene *s, const struct c
   const struct cb_arithmetic *a = variant->arithmetic;
   *r = (struct run){.variant = *variant, .nodes = s->mesh.nodes};
   cb_variant_name(variant, r->name);
-  assert_int_equal(cb_operator_create(&r->variant, &s->mesh, material, c, &r->op), CB_OK);
+  assert_int_equal(cb_operator_create(&r->variant, &s->mesh, material, c, 1, &r->op), CB_OK);
   r->x = vector_new(a, r->nodes, s->x);
   r->v = vector_new(a, r->nodes, s->v);
   r->u = vector_new(a, r->nodes, s->u);

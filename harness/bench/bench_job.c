@@ -37,7 +37,7 @@ enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_s
   cb_variant_name(v, made.name);
   const double begin = cb_timer_now();
   enum cb_status status =
-      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(step), &made.op);
+      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(step), 1, &made.op);
   if (!status) status = cb_stepper_create(made.op, step, scene->mass, scene->fixed, &made.stepper);
   made.setup_s = cb_timer_now() - begin;
   status = cb_bench_explain(status, made.name);

@@ -12,7 +12,7 @@ static enum cb_status add_row(struct cb_bench *b, const struct cb_bench_scene *s
                               const struct cb_variant *v) {
   struct cb_operator *op;
   enum cb_status status =
-      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(&cb_bench_step), &op);
+      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(&cb_bench_step), 1, &op);
   char name[CB_NAME];
   cb_variant_name(v, name);
   if (status) return cb_bench_explain(status, name);

@@ -104,7 +104,7 @@ static enum cb_status evaluate(const struct cb_variant *variant, const struct cb
   const struct cb_arithmetic *arithmetic = variant->arithmetic;
   struct cb_operator *op = NULL;
   void *x = vector_create(arithmetic, mesh->nodes), *f = vector_create(arithmetic, mesh->nodes);
-  enum cb_status status = x && f ? cb_operator_create(variant, mesh, material, 1, &op) : CB_MEMORY;
+  enum cb_status status = x && f ? cb_operator_create(variant, mesh, material, 1, 1, &op) : CB_MEMORY;
   if (status != CB_OK) {
     status = status == CB_MEMORY ? cb_fail_memory("the element arrays")
                                  : cb_fail(status, "this variant is not offered for this material "

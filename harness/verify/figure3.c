@@ -37,7 +37,7 @@ static enum cb_status body_make(const char *model, struct body *b) {
   if (!v) return cb_fail(CB_BROKEN, "the model %s of figure 3 is not in this program", model);
   cb_mesh_mass(&mesh, DENSITY, b->mass);
   enum cb_status status = cb_material_isotropic(YOUNG, POISSON, DENSITY, &m);
-  if (!status) status = cb_operator_create(v, &mesh, &m, 1, &b->op);
+  if (!status) status = cb_operator_create(v, &mesh, &m, 1, 1, &b->op);
   return status == CB_MEMORY ? cb_fail_memory("figure 3") : status;
 }
 

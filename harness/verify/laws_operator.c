@@ -135,7 +135,7 @@ enum cb_status cb_law_tangent(struct cb_law_session *s, const struct cb_material
   quad *vectors = calloc(5 * t.length, sizeof *vectors);
   enum cb_status status = CB_MEMORY;
   if (wrong && vectors)
-    status = cb_operator_create(in_quad(s->probe.variant), &mesh, material, 1, &t.op);
+    status = cb_operator_create(in_quad(s->probe.variant), &mesh, material, 1, 1, &t.op);
   if (status) goto done;
   t.x = vectors, t.u = t.x + 2 * t.length, t.f = t.u + t.length, t.K = t.f + t.length;
   for (size_t i = 0; i < t.length; i++) t.x[i] = s->p->x[i];

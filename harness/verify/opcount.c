@@ -8,8 +8,8 @@
 #include "harness/files/mesh.h"
 #include "harness/verify/probe.h"
 
-const char *const cb_stage_name[STAGES] = {"scatter", "frame",    "strain-displacement",
-                                           "force",   "assembly", "product"};
+const char *const cb_stage_name[STAGES] = {"rest",  "scatter",  "frame",  "strain-displacement",
+                                           "force", "assembly", "product"};
 
 static enum cb_status sample_mesh(const struct cb_variant *v, struct cb_mesh *mesh) {
   static const double X[12] = {0, 0, 0, 1, 0.1, 0, 0.2, 1, 0.1, 0.3, 0.2, 1};

@@ -11,7 +11,7 @@ enum cb_status cb_probe_open(const struct cb_variant *variant, const struct cb_m
   struct cb_probe p = {.variant = variant, .nodes = mesh->nodes};
   char name[96];
   cb_variant_name(variant, name);
-  enum cb_status status = cb_operator_create(variant, mesh, material, 1, &p.op);
+  enum cb_status status = cb_operator_create(variant, mesh, material, 1, 1, &p.op);
   size_t bytes = (mesh->nodes * a->stride * a->scalar_bytes / 64 + 2) * 64;
   p.x = aligned_alloc(64, bytes);
   p.out = aligned_alloc(64, bytes);

@@ -219,7 +219,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
   paper_forces(SPARSE, 0, state, B, P, f);
 }
 
-/* ---- one model: its five storages, isotropic and orthotropic ---------------- */
+/* ---- one model: its storages, isotropic and orthotropic ---------------- */
 
 /* Functions of model ID with the element functions bound to constants. */
 #define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
@@ -236,6 +236,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
     corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, ev, h, m, X, f);                             \
   }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
+  STORAGE_CLUSTER(ID, TAG, (ORTHO) || NO_FRAME ? KEEP_STATE : KEEP_GRADIENTS)                      \
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))
 
 #define COROTATED_PRODUCT(ID, POLICY, ORTHO, TAG)                                                  \
@@ -243,7 +244,8 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                                      const T *u, T *f) {                                           \
     corotated_ebe_product(E, POLICY, ORTHO, r, s, u, f);                                           \
   }                                                                                                \
-  STORAGE_EBE_PRODUCT(ID, TAG)
+  STORAGE_EBE_PRODUCT(ID, TAG)                                                                     \
+  STORAGE_CLUSTER_PRODUCT(ID, TAG)
 
 #define COROTATED_PAPER(ID, POLICY, EXACT, ORTHO, TAG)                                             \
   INLINE void ID##_paper_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,   \
@@ -277,10 +279,16 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
   }
 #endif
 
+/* Gradients are functions of the positions alone where B is updated. */
+#define COROTATED_RECOMPUTE_FORM(ID, POLICY)                                                       \
+  (POLICY) == POLICY_PRECOMPUTED ? NULL : ID##_recompute_update_iso,                               \
+      (POLICY) == POLICY_PRECOMPUTED ? NULL : CB_NAME(cb_product_recompute), 1
+
 #define COROTATED(ID, POLICY, EXACT)                                                               \
   COROTATED_FORM(ID, POLICY, EXACT, 0, iso)                                                        \
   COROTATED_FORM(ID, POLICY, EXACT, 1, ortho)                                                      \
   COROTATED_PRODUCT(ID, POLICY, 1, ortho)                                                          \
+  STORAGE_RECOMPUTE(ID, iso)                                                                       \
   COROTATED_PAPERS(ID, POLICY, EXACT)
 
 #define COROTATED_FORMS(ID, POLICY)                                                                \
@@ -288,6 +296,9 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
     [CB_EBE_PAPER] = COROTATED_PAPER_FORMS(ID, POLICY),                                            \
     [CB_EBE] = {FORM_EBE_SHARED(ID, iso, COROTATED_STATE_EBE(POLICY, 0)),                          \
                 FORM_EBE(ID, ortho, COROTATED_STATE_EBE(POLICY, 1))},                              \
+    [CB_EBE_CLUSTER] = {FORM_CLUSTER_SHARED(ID, iso),                                              \
+                        FORM_CLUSTER(ID, ortho, COROTATED_STATE_EBE(POLICY, 1))},                  \
+    [CB_EBE_RECOMPUTE] = {{COROTATED_RECOMPUTE_FORM(ID, POLICY)}, {NULL, NULL, 0}},                \
     [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), FORM_MATRIX(ID, ortho)},                              \
     [CB_CSR] = {FORM_CSR(ID, iso), FORM_CSR(ID, ortho)}, [CB_BCSR] = {                             \
       FORM_BCSR(ID, iso),                                                                          \

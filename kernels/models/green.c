@@ -106,6 +106,8 @@ INLINE void green_blocks(const struct cb_elements *E, int ortho, const T *rest, 
   }                                                                                                \
   STORAGE_EBE(green, TAG)                                                                          \
   STORAGE_EBE_PRODUCT(green, TAG)                                                                  \
+  STORAGE_CLUSTER(green, TAG, KEEP_STATE)                                                          \
+  STORAGE_CLUSTER_PRODUCT(green, TAG)                                                              \
   STORAGE_BLOCKS(green, TAG, 0)
 GREEN(0, iso)
 GREEN(1, ortho)
@@ -120,7 +122,9 @@ const struct cb_model CB_NAME(cb_model_green) = {
     .source = "Picinbono, Delingette, Ayache 2003",
     .laws = {GREEN_LAWS, GREEN_LAWS},
     .policy = POLICY_PRECOMPUTED,
+    .keeps_rest = true,
     .form = {[CB_EBE] = {FORM_EBE(green, iso, 15), FORM_EBE(green, ortho, 15)},
+             [CB_EBE_CLUSTER] = {FORM_CLUSTER(green, iso, 15), FORM_CLUSTER(green, ortho, 15)},
              [CB_EBE_MATRIX] = {FORM_MATRIX(green, iso), FORM_MATRIX(green, ortho)},
              [CB_CSR] = {FORM_CSR(green, iso), FORM_CSR(green, ortho)},
              [CB_BCSR] = {FORM_BCSR(green, iso), FORM_BCSR(green, ortho)}}};

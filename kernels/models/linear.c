@@ -13,12 +13,17 @@ COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 1, ortho)
 COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, 0, iso)
 COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, 1, ortho)
 
+static void assembled(struct cb_elements *E, size_t thread) {
+  cb_team_barrier(E->team);
+  if (thread == 0) E->assembled = true;
+}
+
 /* The matrix is assembled once; afterwards only the force pass is left. */
 #define ASSEMBLED_ONCE(NAME, FULL, FORCE)                                                          \
   UPDATE_FUNCTION(                                                                                 \
-      NAME, if (E->assembled) FORCE(E, x, v, h, out); else {                                       \
-        FULL(E, x, v, h, out);                                                                     \
-        E->assembled = true;                                                                       \
+      NAME, if (E->assembled) FORCE(E, thread, x, v, h, out); else {                                       \
+        FULL(E, thread, x, v, h, out);                                                             \
+        assembled(E, thread);                                                                     \
       })
 ASSEMBLED_ONCE(linear_assembled_once_iso, linear_assembled_update_iso, linear_ebe_update_iso)
 ASSEMBLED_ONCE(linear_assembled_once_ortho, linear_assembled_update_ortho, linear_ebe_update_ortho)
@@ -35,7 +40,9 @@ const struct cb_model CB_NAME(cb_model_linear) = {
     .source = "Zienkiewicz & Cheung 1967",
     .laws = {LINEAR_LAWS, LINEAR_LAWS},
     .policy = POLICY_PRECOMPUTED,
+    .keeps_rest = true,
     .form = {[CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
+             [CB_EBE_CLUSTER] = {FORM_CLUSTER(linear, iso, 0), FORM_CLUSTER(linear, ortho, 0)},
              [CB_EBE_MATRIX] = {{linear_matrix_once_iso, CB_NAME(cb_product_matrix), 54},
                                 {linear_matrix_once_ortho, CB_NAME(cb_product_matrix), 54}},
              [CB_CSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_csr), 0},

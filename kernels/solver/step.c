@@ -10,17 +10,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kernels/arithmetic.h"
 #include "kernels/arithmetics.h"
 #include "kernels/solver/stepper.h"
-
-#define LENGTH(s) (STRIDE * (s)->nodes)
+#include "kernels/solver/vectors.h"
 
 static void free_stepper(struct cb_stepper *s) {
   for (int i = 0; i < STEPPER_VECTORS; i++) free(s->vector[i]);
-  free(s->mass);
   free(s->fixed);
+  free(s->partial);
   free(s);
+}
+
+static void fill_mass(const struct cb_stepper *s, const double *mass) {
+  const double factor = 1 + s->parameters.h * s->parameters.beta;
+  S *m = s->vector[STEPPER_MASS];
+  for (size_t i = 0; i < STRIDE * s->nodes; i++) m[i] = (S)(factor * mass[i / STRIDE]);
 }
 
 static enum cb_status create(struct cb_operator *op, const struct cb_step_parameters *p,
@@ -29,123 +33,162 @@ static enum cb_status create(struct cb_operator *op, const struct cb_step_parame
   struct cb_stepper *s = calloc(1, sizeof *s);
   if (!s) return CB_MEMORY;
   s->op = op, s->parameters = *p, s->nodes = nodes;
-  size_t bytes = (LENGTH(s) * sizeof(S) + 63) / 64 * 64 + 64;
+  s->threads = cb_team_threads(cb_operator_team(op));
+  const size_t bytes = (blocks_of(nodes) * BLOCK_SCALARS * sizeof(S) / 64 + 1) * 64;
   bool there = true;
   for (int i = 0; i < STEPPER_VECTORS; i++) {
     s->vector[i] = aligned_alloc(64, bytes);
     if (s->vector[i]) memset(s->vector[i], 0, bytes);
     there = there && s->vector[i];
   }
-  s->mass = malloc(nodes * sizeof(S) + 1);
-  s->fixed = calloc(nodes + 1, 1);
-  if (!there || !s->mass || !s->fixed) {
+  for (size_t n = 0; fixed && n < nodes; n++) s->fixed_count += fixed[n] != 0;
+  s->fixed = malloc(s->fixed_count * sizeof *s->fixed + 1);
+  s->partial = aligned_alloc(64, s->threads * sizeof *s->partial);
+  if (!there || !s->fixed || !s->partial) {
     free_stepper(s);
     return CB_MEMORY;
   }
-  s->bytes = STEPPER_VECTORS * bytes + nodes * (sizeof(S) + 1);
-  for (size_t n = 0; n < nodes; n++) ((S *)s->mass)[n] = (S)mass[n];
-  if (fixed) memcpy(s->fixed, fixed, nodes);
+  s->bytes =
+      STEPPER_VECTORS * bytes + s->fixed_count * sizeof *s->fixed + s->threads * sizeof *s->partial;
+  for (size_t n = 0, i = 0; i < s->fixed_count; n++)
+    if (fixed[n]) s->fixed[i++] = (uint32_t)n;
+  fill_mass(s, mass);
   *out = s;
   return CB_OK;
 }
 
-static void filter(const struct cb_stepper *s, S *v) {
-  for (size_t n = 0; n < s->nodes; n++)
-    if (s->fixed[n])
-      for (size_t i = 0; i < STRIDE; i++) v[STRIDE * n + i] = 0;
+/* v := 0 on the fixed nodes among those scalars. */
+static void filter(const struct cb_stepper *s, struct share scalars, S *v) {
+  size_t low = 0, high = s->fixed_count; /* the first fixed node at or after scalars.first */
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (STRIDE * (size_t)(s->fixed[middle] + 1) <= scalars.first)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  for (; low < s->fixed_count; low++)
+    for (size_t i = STRIDE * (size_t)s->fixed[low], end = i + STRIDE; i < end; i++) {
+      if (i >= scalars.last) return;
+      if (i >= scalars.first) v[i] = 0;
+    }
+}
+
+/* The sum over all threads, the same on each; which: two sums must not follow each
+ * other in the same place. */
+static ACC reduce(const struct cb_stepper *s, size_t thread, int which, const struct sum *own) {
+  ACC part = sum_total(own), total = 0;
+  memcpy(s->partial[thread].sum[which], &part, sizeof part);
+  cb_team_barrier(cb_operator_team(s->op));
+  for (size_t t = 0; t < s->threads; t++) {
+    memcpy(&part, s->partial[t].sum[which], sizeof part);
+    total += part;
+  }
+  return total;
 }
 
 /* b := h (f + f_ext) - c K v - h beta M v, zero on fixed nodes. */
-static void right_side(struct cb_stepper *s, const void *x, const void *velocity,
+static void right_side(struct cb_stepper *s, size_t thread, const void *x, const void *velocity,
                        const void *external) {
-  S *b = s->vector[STEPPER_B];
-  const S *v = velocity, *f = external, *m = s->mass;
-  const S h = (S)s->parameters.h, drag = (S)(s->parameters.h * s->parameters.beta);
-  cb_operator_update(s->op, x, v, s->parameters.h, b);
+  S *restrict b = s->vector[STEPPER_B];
+  const S *restrict v = velocity, *restrict f = external, *restrict m = s->vector[STEPPER_MASS];
+  const double damping = s->parameters.h * s->parameters.beta;
+  const S h = (S)s->parameters.h, drag = (S)(damping / (1 + damping));
+  const struct share own = scalars_of(s->nodes, share_of(s->nodes, s->threads, thread));
+  for (size_t i = own.first; i < own.last; i++) b[i] = 0;
   if (f)
-    for (size_t i = 0; i < LENGTH(s); i++) b[i] += h * f[i];
+    for (size_t i = own.first; i < own.last; i++) b[i] = h * f[i];
   if (drag != 0)
-    for (size_t n = 0; n < s->nodes; n++)
-      for (size_t i = 0; i < 3; i++) b[STRIDE * n + i] -= drag * m[n] * v[STRIDE * n + i];
-  filter(s, b);
+    for (size_t i = own.first; i < own.last; i++) b[i] -= drag * m[i] * v[i];
+  cb_team_barrier(cb_operator_team(s->op));
+  cb_operator_update_part(s->op, thread, x, velocity, s->parameters.h, b);
+  cb_team_barrier(cb_operator_team(s->op));
+  filter(s, own, b);
 }
 
-/* Sums are kept apart by coordinate, so that they do not wait for each other and
- * nodes are added as vectors; in double, for float too. */
-struct sum {
-  ACC part[STRIDE];
-};
-
-static inline ACC total(const struct sum *s) {
-  ACC sum = s->part[0];
-  for (int i = 1; i < STRIDE; i++) sum += s->part[i];
-  return sum;
-}
-
-static ACC norm2(const struct cb_stepper *s, const S *restrict a) {
-  struct sum sum = {{0}};
-  for (size_t n = 0; n < LENGTH(s); n += STRIDE)
-    for (size_t i = 0; i < STRIDE; i++) sum.part[i] += (ACC)a[n + i] * (ACC)a[n + i];
-  return total(&sum);
-}
-
-/* y := filtered A p; returns p . y. */
-static ACC apply(const struct cb_stepper *s, const S *restrict p, S *restrict y) {
-  const S *restrict m = s->mass;
-  const S factor = (S)(1 + s->parameters.h * s->parameters.beta);
-  struct sum sum = {{0}};
-  cb_operator_product(s->op, p, y);
-  for (size_t n = 0; n < s->nodes; n++) {
-    const S mass = factor * m[n], keep = s->fixed[n] ? (S)0 : (S)1;
-    const S *restrict pn = p + STRIDE * n;
-    S *restrict yn = y + STRIDE * n;
-    for (size_t i = 0; i < STRIDE; i++) {
-      yn[i] = keep * (yn[i] + mass * pn[i]);
-      sum.part[i] += (ACC)pn[i] * (ACC)yn[i];
+/* dv := 0, r, p := b, y := M p; returns r . r. */
+static ACC start(const struct cb_stepper *s, size_t thread, struct share own) {
+  const T *restrict b = s->vector[STEPPER_B], *restrict m = s->vector[STEPPER_MASS];
+  T *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
+  T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+  struct sum sum = {0};
+  for (size_t i = own.first; i < own.last; i += BLOCK_TS)
+    for (size_t n = 0; n < BLOCK_TS; n++) {
+      const T value = b[i + n];
+      dv[i + n] = LIT(0);
+      r[i + n] = p[i + n] = value;
+      y[i + n] = m[i + n] * value;
+      sum_product(&sum, n, value, value);
     }
-  }
-  return total(&sum);
+  return reduce(s, thread, 1, &sum);
+}
+
+/* Returns p . y. */
+static ACC curvature(const struct cb_stepper *s, size_t thread, struct share own) {
+  const T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+  struct sum sum = {0};
+  for (size_t i = own.first; i < own.last; i += BLOCK_TS)
+    for (size_t n = 0; n < BLOCK_TS; n++) sum_product(&sum, n, p[i + n], y[i + n]);
+  return reduce(s, thread, 0, &sum);
 }
 
 /* dv += alpha p, r -= alpha y; returns r . r. */
-static ACC descend(const struct cb_stepper *s, S alpha, const S *restrict p, const S *restrict y,
-                   S *restrict dv, S *restrict r) {
-  struct sum sum = {{0}};
-  for (size_t n = 0; n < LENGTH(s); n += STRIDE)
-    for (size_t i = n; i < n + STRIDE; i++) {
-      dv[i] += alpha * p[i];
-      r[i] -= alpha * y[i];
-      sum.part[i - n] += (ACC)r[i] * (ACC)r[i];
+static ACC descend(const struct cb_stepper *s, size_t thread, struct share own, T alpha) {
+  const T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+  T *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
+  struct sum sum = {0};
+  for (size_t i = own.first; i < own.last; i += BLOCK_TS)
+    for (size_t n = 0; n < BLOCK_TS; n++) {
+      const T left = r[i + n] - alpha * y[i + n];
+      dv[i + n] = dv[i + n] + alpha * p[i + n];
+      r[i + n] = left;
+      sum_product(&sum, n, left, left);
     }
-  return total(&sum);
+  return reduce(s, thread, 1, &sum);
+}
+
+/* p := r + beta p, y := M p. */
+static void turn(const struct cb_stepper *s, struct share own, T beta) {
+  const T *restrict r = s->vector[STEPPER_R], *restrict m = s->vector[STEPPER_MASS];
+  T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+  for (size_t i = own.first; i < own.last; i++) {
+    const T next = r[i] + beta * p[i];
+    p[i] = next;
+    y[i] = m[i] * next;
+  }
 }
 
 /* Once the residual is gone to rounding, or p . A p underflows (float), the work
  * goes on with zero steps: every iteration costs the same, and no 0/0 arises. */
-static void solve(struct cb_stepper *s) {
-  S *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
-  S *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
-  const S *restrict b = s->vector[STEPPER_B];
-  for (size_t i = 0; i < LENGTH(s); i++) dv[i] = 0, r[i] = p[i] = b[i];
+static void solve(struct cb_stepper *s, size_t thread) {
+  struct cb_team *team = cb_operator_team(s->op);
+  const struct share own = share_of(s->nodes, s->threads, thread);
   const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
-  ACC rr = norm2(s, r), enough = rr * (ACC)(roundoff * roundoff);
+  ACC rr = start(s, thread, own), enough = rr * (ACC)(roundoff * roundoff);
   for (size_t k = 0; k < s->parameters.iterations; k++) {
-    const ACC py = apply(s, p, y);
+    cb_operator_product_part(s->op, thread, s->vector[STEPPER_P], s->vector[STEPPER_Y]);
+    cb_team_barrier(team);
+    filter(s, scalars_of(s->nodes, own), s->vector[STEPPER_Y]);
+    const ACC py = curvature(s, thread, own);
     const int finished = !(rr > enough) || py == 0;
-    const ACC next = descend(s, finished ? (S)0 : (S)(rr / py), p, y, dv, r);
-    const S beta = finished ? (S)0 : (S)(next / rr);
-    for (size_t i = 0; i < LENGTH(s); i++) p[i] = r[i] + beta * p[i];
+    const ACC next = descend(s, thread, own, splat(finished ? (S)0 : (S)(rr / py)));
+    if (k + 1 == s->parameters.iterations) break;
+    turn(s, own, splat(finished ? (S)0 : (S)(next / rr)));
     rr = next;
+    cb_team_barrier(team);
   }
 }
 
-static void advance(struct cb_stepper *s, void *positions, void *velocities) {
+static void advance(struct cb_stepper *s, size_t thread, void *positions, void *velocities) {
   S *restrict x = positions, *restrict v = velocities;
   const S *restrict dv = s->vector[STEPPER_DV];
   const S h = (S)s->parameters.h;
-  for (size_t i = 0; i < LENGTH(s); i++) v[i] += dv[i];
-  filter(s, v);
-  for (size_t i = 0; i < LENGTH(s); i++) x[i] += h * v[i];
+  const struct share own = scalars_of(s->nodes, share_of(s->nodes, s->threads, thread));
+  filter(s, own, v); /* and dv is zero there */
+  for (size_t i = own.first; i < own.last; i++) {
+    v[i] += dv[i];
+    x[i] += h * v[i];
+  }
 }
 
 const struct cb_step_functions CB_NAME(cb_step) = {create, free_stepper, right_side, solve,

@@ -1,5 +1,5 @@
 /* stepper.h - what an implicit step keeps; vectors are node vectors of the
- * operator's arithmetic.
+ * operator's arithmetic, padded with zeros to whole blocks (vectors.h).
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_STEPPER_H
@@ -7,15 +7,29 @@
 
 #include "kernels/kernel.h"
 
-enum { STEPPER_B, STEPPER_DV, STEPPER_R, STEPPER_P, STEPPER_Y, STEPPER_VECTORS };
+enum {
+  STEPPER_B,
+  STEPPER_DV,
+  STEPPER_R,
+  STEPPER_P,
+  STEPPER_Y,
+  STEPPER_MASS, /* (1 + h beta) m, kg, for each coordinate */
+  STEPPER_VECTORS
+};
+
+/* A thread's share of two sums, on cache lines of its own. */
+struct cb_partial {
+  _Alignas(64) unsigned char sum[2][16];
+};
 
 struct cb_stepper {
   struct cb_operator *op; /* not owned */
   struct cb_step_parameters parameters;
-  size_t nodes, bytes;
+  size_t nodes, threads, bytes;
   void *vector[STEPPER_VECTORS];
-  void *mass;     /* [nodes] scalars, kg */
-  uint8_t *fixed; /* [nodes] */
+  uint32_t *fixed; /* [fixed_count] node numbers, ascending */
+  size_t fixed_count;
+  struct cb_partial *partial; /* [threads] */
 };
 
 #endif

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/storage/blocks.h"
 #include "kernels/storage/products.h"
+#include "kernels/team.h"
 
 /* Block (row, slot) of the values: its nine numbers go to first[r*step + c]. */
 static S *block_at(const struct cb_elements *E, bool blocked, uint32_t row, uint32_t slot,
@@ -14,7 +15,8 @@ static S *block_at(const struct cb_elements *E, bool blocked, uint32_t row, uint
                  : E->values + 9 * (size_t)start + 3 * (size_t)(slot - start);
 }
 
-void CB_NAME(cb_assemble)(struct cb_elements *E, bool products) {
+void CB_NAME(cb_assemble)(struct cb_elements *E, size_t thread, bool products) {
+  if (thread != 0) return; /* replaced in the next commit */
   const struct cb_pattern *p = E->pattern;
   const bool blocked = !E->scalar_row;
   STAGE(STAGE_ASSEMBLY);
@@ -46,12 +48,15 @@ void CB_NAME(cb_assemble)(struct cb_elements *E, bool products) {
   }
 }
 
-void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, const void *vector, void *result) {
+void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, size_t thread, const void *vector,
+                              void *result) {
   const struct cb_pattern *p = E->pattern;
   const S *restrict u = vector, *restrict K = E->values;
   S *restrict y = result;
   STAGE(STAGE_PRODUCT);
-  for (size_t i = 0; i < p->nodes; i++) {
+  size_t first, last;
+  cb_team_share(p->nodes, E->packs->threads, thread, &first, &last);
+  for (size_t i = first; i < last; i++) {
     S a = 0, b = 0, c = 0;
     for (size_t n = p->row_start[i]; n < p->row_start[i + 1]; n++) {
       const S *B = K + 9 * n, *q = u + STRIDE * (size_t)p->column[n];
@@ -60,23 +65,23 @@ void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, const void *vector, v
       c += B[6] * q[0] + B[7] * q[1] + B[8] * q[2];
     }
     S *out = y + STRIDE * i;
-    out[0] = a, out[1] = b, out[2] = c;
-    for (size_t j = 3; j < STRIDE; j++) out[j] = 0;
+    out[0] += a, out[1] += b, out[2] += c;
   }
 }
 
 /* Scalar rows: each number has a column index of its own, as in textbook csr. */
-void CB_NAME(cb_product_csr)(const struct cb_elements *E, const void *vector, void *result) {
+void CB_NAME(cb_product_csr)(const struct cb_elements *E, size_t thread, const void *vector,
+                             void *result) {
   const struct cb_pattern *p = E->pattern;
   const S *restrict u = vector, *restrict K = E->values;
   const uint32_t *restrict row = E->scalar_row, *restrict column = E->scalar_column;
   S *restrict y = result;
   STAGE(STAGE_PRODUCT);
-  for (size_t i = 0; i < 3 * p->nodes; i++) {
+  size_t first, last;
+  cb_team_share(p->nodes, E->packs->threads, thread, &first, &last);
+  for (size_t i = 3 * first; i < 3 * last; i++) {
     S sum = 0;
     for (size_t n = row[i]; n < row[i + 1]; n++) sum += K[n] * u[column[n]];
-    y[STRIDE * (i / 3) + i % 3] = sum;
+    y[STRIDE * (i / 3) + i % 3] += sum;
   }
-  for (size_t i = 0; i < p->nodes; i++)
-    for (size_t j = 3; j < STRIDE; j++) y[STRIDE * i + j] = 0;
 }

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "kernels/storage/drive.h"
+#include "kernels/team.h"
 
 /* One pack in an update, as update_pack_fn; X[6][9] are blocks, or what
  * edge_products makes. */
@@ -30,42 +31,52 @@ typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T 
 
 /* Update of ebe-matrix (state = six blocks), and of csr and bcsr; products: the
  * blocks come as edge products. */
-DRIVER void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                                blocks_pack_fn *blocks, int products);
-DRIVER void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                                   blocks_pack_fn *blocks, int products);
+DRIVER void drive_update_matrix(struct cb_elements *E, size_t thread, const S *x, const S *v,
+                                double h, S *out, blocks_pack_fn *blocks, int products);
+DRIVER void drive_update_assembled(struct cb_elements *E, size_t thread, const S *x, const S *v,
+                                   double h, S *out, blocks_pack_fn *blocks, int products);
 
-/* The values of csr or bcsr from the edge sums. */
-void CB_NAME(cb_assemble)(struct cb_elements *E, bool products);
+/* One thread's share of the values of csr or bcsr, from the edge sums. */
+void CB_NAME(cb_assemble)(struct cb_elements *E, size_t thread, bool products);
 
 #if CB_LANES == 1 || defined(CB_DEFINE_DRIVERS)
-DRIVER void drive_update_matrix(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                                blocks_pack_fn *blocks, int products) {
-  clear_vector(E, out);
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T e[9], ev[9], f[9], X[54], *K = E->state + p * E->state_numbers;
-    STAGE(STAGE_FRAME);
-    gather_edges(x, tet, e);
-    if (v) gather_edges(v, tet, ev);
-    blocks(E, E->rest + p * E->rest_numbers, e, v ? ev : NULL, LIT(h),
-           E->memory + p * E->memory_numbers, X, f);
-    scatter_edges(out, tet, live_lanes(E, p), f);
-    STAGE(STAGE_ASSEMBLY);
-    for (int n = 0; n < 54; n += 9)
-      if (products)
-        BLOCK_FROM_PRODUCT(E->k, X + n, K + n);
-      else
-        for (int i = 0; i < 9; i++) K[n + i] = X[n + i];
+/* Gather, blocks X[54] and forces of one pack, scatter. */
+INLINE void update_blocks(struct cb_elements *E, const struct range *r, size_t p, const S *x,
+                          const S *v, double h, S *out, blocks_pack_fn *blocks, T *X) {
+  const uint32_t *tet = E->packs->node + p * 4 * LANES;
+  T own[REST_ISOTROPIC], e[9], ev[9], f[9];
+  const T *rest = rest_of(E, tet, p, own);
+  STAGE(STAGE_FRAME);
+  gather_edges(x, tet, e);
+  if (v) gather_edges(v, tet, ev);
+  blocks(E, rest, e, v ? ev : NULL, LIT(h), E->memory + p * E->memory_numbers, X, f);
+  scatter_edges(out, tet, live_lanes(r, p), f);
+  STAGE(STAGE_ASSEMBLY);
+}
+
+DRIVER void drive_update_matrix(struct cb_elements *E, size_t thread, const S *x, const S *v,
+                                double h, S *out, blocks_pack_fn *blocks, int products) {
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      T X[54], *K = E->state + p * E->state_numbers;
+      update_blocks(E, &r, p, x, v, h, out, blocks, X);
+      for (int n = 0; n < 54; n += 9)
+        if (products)
+          BLOCK_FROM_PRODUCT(E->k, X + n, K + n);
+        else
+          for (int i = 0; i < 9; i++) K[n + i] = X[n + i];
+    }
+    part_end(E, thread, part);
   }
 }
 
 /* Sums X[6][9] into the edges, turned where the edge runs from high to low node. */
-INLINE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
+INLINE void sum_edges(struct cb_elements *E, size_t pack, size_t live, const T *X) {
   const uint32_t *edge_of = E->pattern->edge_of + pack * 6 * LANES;
   S numbers[54 * LANES]; /* [6][9][LANES] */
   memcpy(numbers, X, sizeof numbers);
-  for (size_t l = 0; l < live_lanes(E, pack); l++)
+  for (size_t l = 0; l < live; l++)
     for (size_t n = 0; n < 6; n++) {
       uint32_t edge = edge_of[n * LANES + l];
       S *sum = E->edge_sum + 9 * (size_t)(edge >> 1);
@@ -74,23 +85,23 @@ INLINE void sum_edges(struct cb_elements *E, size_t pack, const T *X) {
     }
 }
 
-DRIVER void drive_update_assembled(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                                   blocks_pack_fn *blocks, int products) {
-  clear_vector(E, out);
-  for (size_t i = 0; i < 9 * E->pattern->edges; i++) E->edge_sum[i] = (S)0;
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T e[9], ev[9], f[9], X[54];
-    STAGE(STAGE_FRAME);
-    gather_edges(x, tet, e);
-    if (v) gather_edges(v, tet, ev);
-    blocks(E, E->rest + p * E->rest_numbers, e, v ? ev : NULL, LIT(h),
-           E->memory + p * E->memory_numbers, X, f);
-    scatter_edges(out, tet, live_lanes(E, p), f);
-    STAGE(STAGE_ASSEMBLY);
-    sum_edges(E, p, X);
+DRIVER void drive_update_assembled(struct cb_elements *E, size_t thread, const S *x, const S *v,
+                                   double h, S *out, blocks_pack_fn *blocks, int products) {
+  size_t first, last;
+  cb_team_share(9 * E->pattern->edges, E->packs->threads, thread, &first, &last);
+  for (size_t i = first; i < last; i++) E->edge_sum[i] = (S)0;
+  cb_team_barrier(E->team);
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      T X[54];
+      update_blocks(E, &r, p, x, v, h, out, blocks, X);
+      sum_edges(E, p, live_lanes(&r, p), X);
+    }
+    part_end(E, thread, part);
   }
-  CB_NAME(cb_assemble)(E, products);
+  cb_team_barrier(E->team);
+  CB_NAME(cb_assemble)(E, thread, products);
 }
 #endif
 

@@ -1,14 +1,17 @@
-/* drive.h - the loops over elements: gather, one element function, scatter.
+/* drive.h - the loops over single elements: gather, one element function, scatter.
  * A model hands its functions over as constants, so that they are inlined.
  * Vertex a's share is minus the sum of the others (Newton's law, and
  * translations drop out): element functions see edges b-a, c-a, d-a only.
+ * Every loop is one thread's chunk, and adds to the vector that it is given.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_DRIVE_H
 #define CB_DRIVE_H
 
 #include "kernels/elements.h"
+#include "kernels/spin.h"
 #include "kernels/storage/lanes.h"
+#include "kernels/storage/rest.h"
 #include "kernels/tensor3.h"
 
 /* One pack in an update.
@@ -21,9 +24,42 @@ typedef void update_pack_fn(const struct cb_elements *E, const T *rest, const T 
 typedef void product_pack_fn(const struct cb_elements *E, const T *rest, const T *state,
                              const T *du, T *f);
 
+/* ---- whose turn it is: kernels/packs.h ------------------------------------- */
+
+struct range {
+  size_t first, last; /* packs */
+  size_t tail, tail_live;
+};
+
+/* Thread's packs of part 0, 1 or 2, once they may add to the nodes. */
+INLINE struct range part_begin(const struct cb_elements *E, size_t thread, int part) {
+  const struct cb_chunk *c = &E->packs->chunk[thread];
+  if (part == 0) E->turn[thread].begun++;
+  uint64_t wait = part == 1 ? 0 : c->after[part / 2];
+  for (size_t earlier = 0; wait; earlier++, wait >>= 1)
+    for (size_t n = 0;
+         (wait & 1) && atomic_load_explicit(&E->turn[earlier].done, memory_order_acquire) !=
+                           E->turn[thread].begun;
+         n++)
+      cb_spin(n);
+  return (struct range){c->part[part], c->part[part + 1], c->part[3] - 1, c->last_live};
+}
+
+INLINE void part_end(const struct cb_elements *E, size_t thread, int part) {
+  if (part == 0 && E->packs->threads > 1)
+    atomic_store_explicit(&E->turn[thread].done, E->turn[thread].begun, memory_order_release);
+}
+
+INLINE size_t live_lanes(const struct range *r, size_t pack) {
+  return pack == r->tail ? r->tail_live : LANES;
+}
+
+/* ---- gather and scatter ----------------------------------------------------- */
+
 /* e[9] := differences of the node vector x along b-a, c-a, d-a. */
 INLINE void gather_edges(const S *x, const uint32_t *tet, T *e) {
   T p[12];
+#pragma GCC unroll 4
   for (int j = 0; j < 4; j++) load_nodes(x, tet + j * LANES, p + 3 * j);
   for (int j = 0; j < 9; j++) e[j] = p[3 + j] - p[j % 3];
 }
@@ -37,20 +73,36 @@ INLINE void scatter_edges(S *y, const uint32_t *tet, size_t live, const T *f) {
   for (int j = 1; j < 4; j++) add_to_nodes(y, tet + j * LANES, live, f + 3 * (j - 1));
 }
 
-INLINE void clear_vector(const struct cb_elements *E, S *y) {
-  for (size_t i = 0; i < STRIDE * E->nodes; i++) y[i] = (S)0;
+OUTLINE void rest_called(const struct cb_elements *E, const T *e, T *rest) {
+  rest_of_edges(E, e, rest);
 }
 
-/* y := the product over all packs; inlined wherever it stands. */
-INLINE void product_loop(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
-  clear_vector(E, y);
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T du[9], f[9];
-    STAGE(STAGE_PRODUCT);
-    gather_edges(u, tet, du);
-    product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
-    scatter_edges(y, tet, live_lanes(E, p), f);
+/* Rest data of a pack of single elements: kept, or made in own[REST_ISOTROPIC]. */
+INLINE const T *rest_of(const struct cb_elements *E, const uint32_t *tet, size_t slot, T *own) {
+  if (E->rest) return E->rest + slot * E->rest_numbers;
+  T e[9];
+  STAGE(STAGE_REST);
+  gather_edges(E->X, tet, e);
+  rest_called(E, e, own);
+  return own;
+}
+
+/* ---- loops ------------------------------------------------------------------- */
+
+/* y += the product over one thread's packs; inlined wherever it stands. */
+INLINE void product_loop(const struct cb_elements *E, size_t thread, const S *u, S *y,
+                         product_pack_fn *product) {
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      const uint32_t *tet = E->packs->node + p * 4 * LANES;
+      T du[9], f[9];
+      STAGE(STAGE_PRODUCT);
+      gather_edges(u, tet, du);
+      product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
+      scatter_edges(y, tet, live_lanes(&r, p), f);
+    }
+    part_end(E, thread, part);
   }
 }
 
@@ -65,28 +117,34 @@ INLINE void product_loop(const struct cb_elements *E, const S *u, S *y, product_
 #define drive_update_matrix CB_NAME(cb_drive_update_matrix)
 #define drive_update_assembled CB_NAME(cb_drive_update_assembled)
 #endif
-DRIVER void drive_update(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                         update_pack_fn *update);
-DRIVER void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product);
+DRIVER void drive_update(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
+                         S *out, update_pack_fn *update);
+DRIVER void drive_product(const struct cb_elements *E, size_t thread, const S *u, S *y,
+                          product_pack_fn *product);
 
 #if CB_LANES == 1 || defined(CB_DEFINE_DRIVERS)
-DRIVER void drive_update(struct cb_elements *E, const S *x, const S *v, double h, S *out,
-                         update_pack_fn *update) {
-  clear_vector(E, out);
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T e[9], ev[9], f[9];
-    STAGE(STAGE_FRAME);
-    gather_edges(x, tet, e);
-    if (v) gather_edges(v, tet, ev);
-    update(E, E->rest + p * E->rest_numbers, e, v ? ev : NULL, LIT(h),
-           E->memory + p * E->memory_numbers, E->state + p * E->state_numbers, f);
-    scatter_edges(out, tet, live_lanes(E, p), f);
+DRIVER void drive_update(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
+                         S *out, update_pack_fn *update) {
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      const uint32_t *tet = E->packs->node + p * 4 * LANES;
+      T own[REST_ISOTROPIC], e[9], ev[9], f[9];
+      const T *rest = rest_of(E, tet, p, own);
+      STAGE(STAGE_FRAME);
+      gather_edges(x, tet, e);
+      if (v) gather_edges(v, tet, ev);
+      update(E, rest, e, v ? ev : NULL, LIT(h), E->memory + p * E->memory_numbers,
+             E->state + p * E->state_numbers, f);
+      scatter_edges(out, tet, live_lanes(&r, p), f);
+    }
+    part_end(E, thread, part);
   }
 }
 
-DRIVER void drive_product(const struct cb_elements *E, const S *u, S *y, product_pack_fn *product) {
-  product_loop(E, u, y, product);
+DRIVER void drive_product(const struct cb_elements *E, size_t thread, const S *u, S *y,
+                          product_pack_fn *product) {
+  product_loop(E, thread, u, y, product);
 }
 #endif
 

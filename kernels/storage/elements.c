@@ -10,6 +10,8 @@
 #include "kernels/arithmetics.h"
 #include "kernels/frames/polar_higham.h"
 #include "kernels/material.h"
+#include "kernels/storage/lanes.h"
+#include "kernels/team.h"
 
 struct layout {
   const struct cb_model *model;
@@ -121,7 +123,7 @@ static void scale_rest(const struct layout *L, REAL det, REAL share, REAL *r) {
   }
 }
 
-/* r := rest data of tetrahedron tet. */
+/* r := rest data of the tetrahedron of the nodes tet[4]. */
 static void element_rest(const struct layout *L, const struct cb_mesh *mesh, const uint32_t *tet,
                          REAL *r) {
   REAL e[9], q[9], y[9], *g = r + REST_G;
@@ -147,15 +149,43 @@ static void element_rest(const struct layout *L, const struct cb_mesh *mesh, con
   }
 }
 
+/* tet[4] := the nodes of tetrahedron i of a pack, in their own order, on that lane. */
+static void slot_nodes(const struct cb_packs *P, size_t p, size_t i, size_t lane, uint32_t *tet) {
+  static const uint8_t single[4] = {0, 1, 2, 3};
+  const uint8_t *vertex = P->pack ? P->shape[P->pack[p].shape].vertex[i] : single;
+  const size_t first = P->pack ? P->pack[p].node : 4 * p;
+  const unsigned code = P->order ? P->order[(P->pack[p].slot + i) * LANES + lane] : 0xe4;
+  for (size_t j = 0; j < 4; j++)
+    tet[j] = P->node[(first + vertex[code >> 2 * j & 3]) * LANES + lane];
+}
+
 static void fill_rest(const struct layout *L, const struct cb_mesh *mesh, struct cb_elements *E) {
-  for (size_t n = 0; n < E->packs * LANES; n++) {
-    size_t t = n < E->tets ? n : E->tets - 1, pack = n / LANES, lane = n % LANES;
-    REAL r[REST_ORTHOTROPIC + 12];
-    element_rest(L, mesh, mesh->tet + 4 * t, r);
-    for (size_t i = 0; i < E->rest_numbers; i++)
-      LANE(E->rest[pack * E->rest_numbers + i], lane) = (S)r[i];
-    for (size_t j = 0; j < 4; j++) E->tet[(pack * 4 + j) * LANES + lane] = mesh->tet[4 * t + j];
+  const struct cb_packs *P = E->packs;
+  for (size_t p = 0; p < P->packs; p++) {
+    const size_t slot = P->pack ? P->pack[p].slot : p;
+    const size_t tets = P->pack ? P->shape[P->pack[p].shape].tets : 1;
+    for (size_t i = 0; i < tets; i++)
+      for (size_t lane = 0; lane < LANES; lane++) {
+        REAL r[REST_ORTHOTROPIC + 12];
+        uint32_t tet[4];
+        slot_nodes(P, p, i, lane, tet);
+        element_rest(L, mesh, tet, r);
+        for (size_t n = 0; n < E->rest_numbers; n++)
+          LANE(E->rest[(slot + i) * E->rest_numbers + n], lane) = (S)r[n];
+      }
   }
+}
+
+/* Rest positions, from the middle of the mesh, which rounds them least. */
+static enum cb_status rest_positions(const struct cb_mesh *mesh, struct cb_elements *E) {
+  E->X = aligned_alloc(64, (STRIDE * mesh->nodes * sizeof(S) / 64 + 1) * 64);
+  if (!E->X) return CB_MEMORY;
+  double middle[3] = {0};
+  for (size_t i = 0; i < 3 * mesh->nodes; i++) middle[i % 3] += mesh->X[i] / (double)mesh->nodes;
+  for (size_t n = 0; n < mesh->nodes; n++)
+    for (size_t i = 0; i < STRIDE; i++)
+      E->X[STRIDE * n + i] = i < 3 ? (S)((REAL)mesh->X[3 * n + i] - (REAL)middle[i]) : (S)0;
+  return CB_OK;
 }
 
 /* Column indices of the scalar rows, into node vectors. */
@@ -177,7 +207,7 @@ static enum cb_status scalar_pattern(struct cb_elements *E) {
 
 static enum cb_status assembled_arrays(const struct cb_variant *v, const struct cb_mesh *mesh,
                                        struct cb_elements *E) {
-  enum cb_status status = cb_pattern_create(mesh, LANES, &E->pattern);
+  enum cb_status status = cb_pattern_create(mesh, E->packs, &E->pattern);
   if (status) return status;
   E->bytes += E->pattern->bytes;
   E->edge_sum = array(E, 9 * E->pattern->edges, sizeof(S));
@@ -188,9 +218,11 @@ static enum cb_status assembled_arrays(const struct cb_variant *v, const struct 
 
 void CB_NAME(cb_elements_free)(struct cb_elements *E) {
   if (!E) return;
-  void *arrays[] = {E->tet,    E->rest,       E->memory,        E->state,      E->edge_sum,
-                    E->values, E->scalar_row, E->scalar_column, E->node_frame, E->node_sum};
+  void *arrays[] = {E->turn,       E->X,        E->rest,   E->memory,     E->state,
+                    E->x,          E->edge_sum, E->values, E->scalar_row, E->scalar_column,
+                    E->node_frame, E->node_sum};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+  cb_packs_free(E->packs);
   cb_pattern_free(E->pattern);
   free(E);
 }
@@ -212,24 +244,55 @@ static enum cb_status upright(const struct cb_mesh *mesh, uint32_t **copy) {
 }
 
 static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh *mesh,
-                               struct cb_elements *E) {
-  E->tet = array(E, E->packs * 4 * LANES, sizeof *E->tet);
-  E->rest = array(E, E->packs * E->rest_numbers, sizeof(T));
-  E->memory = array(E, E->packs * E->memory_numbers, sizeof(T));
-  E->state = array(E, E->packs * E->state_numbers, sizeof(T));
-  if (!E->tet || !E->rest || !E->memory || !E->state) return CB_MEMORY;
+                               bool keeps_rest, struct cb_elements *E) {
+  const size_t slots = E->packs->slots, threads = E->packs->threads;
+  E->turn = array(E, threads, sizeof *E->turn);
+  if (keeps_rest) E->rest = array(E, slots * E->rest_numbers, sizeof(T));
+  E->memory = array(E, slots * E->memory_numbers, sizeof(T));
+  E->state = array(E, slots * E->state_numbers, sizeof(T));
+  if (!E->turn || (keeps_rest && !E->rest) || !E->memory || !E->state) return CB_MEMORY;
   if (v->model->node_frames) {
     E->node_frame = array(E, 9 * E->nodes, sizeof(S));
     E->node_sum = array(E, 9 * E->nodes, sizeof(S));
     if (!E->node_frame || !E->node_sum) return CB_MEMORY;
   }
+  if (v->storage == CB_EBE_RECOMPUTE) { /* a node vector, not counted */
+    E->x = aligned_alloc(64, (STRIDE * mesh->nodes * sizeof(S) / 64 + 1) * 64);
+    if (!E->x) return CB_MEMORY;
+  }
   bool assembled = v->storage == CB_CSR || v->storage == CB_BCSR;
   return assembled ? assembled_arrays(v, mesh, E) : CB_OK;
 }
 
+/* From node numbers, which nothing needs any more, to places (lanes.h). */
+static enum cb_status place_nodes(struct cb_elements *E) {
+  if (E->nodes > UINT32_MAX / PLACES) return CB_INPUT;
+  for (size_t i = 0; i < E->packs->nodes * LANES; i++) E->packs->node[i] *= PLACES;
+  return CB_OK;
+}
+
+/* Numbers that are the same in all elements. */
+static void constants(const struct layout *L, const struct cb_mesh *mesh, struct cb_elements *E) {
+  const REAL nu = (REAL)L->material->poisson;
+  E->k = splat(L->orthotropic ? (S)0 : (S)(2 * nu / (1 - 2 * nu)));
+  E->root = splat((S)real_sqrt(L->c * L->mu * (REAL)mesh->share / 6));
+  E->inverse_c = splat((S)(1 / L->c));
+}
+
+/* Which nodes, in which packs. */
+static enum cb_status pack(const struct cb_variant *v, const struct cb_mesh *mesh, size_t threads,
+                           struct cb_elements *E) {
+  const bool clustered = v->storage == CB_EBE_CLUSTER || v->storage == CB_EBE_RECOMPUTE;
+  enum cb_status status = cb_packs_create(mesh, LANES, threads, clustered, &E->packs);
+  if (status) return status;
+  if (E->axes == AXES_WORLD) cb_packs_disorder(E->packs);
+  E->bytes += E->packs->bytes;
+  return CB_OK;
+}
+
 enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const struct cb_mesh *given,
                                            const struct cb_material *material, double c,
-                                           struct cb_elements **out) {
+                                           struct cb_team *team, struct cb_elements **out) {
   struct layout L = {.model = v->model, .material = material, .c = (REAL)c};
   L.orthotropic = material->orthotropic;
   L.paper = v->storage == CB_EBE_PAPER;
@@ -241,18 +304,24 @@ enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const str
   struct cb_elements *E = aligned_alloc(64, (sizeof *E + 63) / 64 * 64);
   if (!E) return CB_MEMORY;
   memset(E, 0, sizeof *E);
-  E->nodes = mesh.nodes, E->tets = mesh.tets;
-  E->packs = (mesh.tets + LANES - 1) / LANES;
-  E->k = splat(L.orthotropic ? (S)0 : (S)(2 * nu / (1 - 2 * nu)));
+  E->nodes = mesh.nodes, E->tets = mesh.tets, E->team = team;
+  E->policy = v->model->policy, E->axes = v->model->axes;
   E->rest_numbers = rest_numbers(&L);
   E->memory_numbers = v->model->memory_numbers;
   E->state_numbers = v->model->form[v->storage][L.orthotropic].state_numbers;
+  constants(&L, &mesh, E);
+  /* One element at a time, memory is no limit: what is kept is not made again. */
+  const bool keeps_rest =
+      LANES == 1 || v->model->keeps_rest || L.orthotropic || E->axes == AXES_POLAR;
   enum cb_status status = CB_OK;
-  if (v->model->axes == AXES_POLAR) status = upright(given, &turned);
+  if (E->axes == AXES_POLAR) status = upright(given, &turned);
   if (turned) mesh.tet = turned;
-  if (!status) status = allocate(v, &mesh, E);
+  if (!status) status = pack(v, &mesh, cb_team_threads(team), E);
+  if (!status) status = allocate(v, &mesh, keeps_rest, E);
+  if (!status && !keeps_rest) status = rest_positions(&mesh, E);
+  if (!status && keeps_rest) fill_rest(&L, &mesh, E);
+  if (!status) status = place_nodes(E);
   if (!status) {
-    fill_rest(&L, &mesh, E);
     *out = E;
     E = NULL;
   }
@@ -262,7 +331,7 @@ enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const str
 }
 
 void CB_NAME(cb_elements_reset)(struct cb_elements *E) {
-  memset(E->memory, 0, E->packs * E->memory_numbers * sizeof(T));
+  memset(E->memory, 0, E->packs->slots * E->memory_numbers * sizeof(T));
 }
 
 size_t CB_NAME(cb_elements_bytes)(const struct cb_elements *E) { return E->bytes; }

@@ -8,16 +8,24 @@
 
 #include "kernels/arithmetic.h"
 
+/* Elements keep their nodes as places in a vector, in units that the processor can
+ * scale an index by: no instruction is spent on that. */
+enum { PLACE_BYTES = LANES == 1 ? sizeof(S) : 8, PLACES = STRIDE * sizeof(S) / PLACE_BYTES };
+INLINE const S *node_at(const S *vector, uint32_t place) {
+  return (const S *)((const char *)vector + PLACE_BYTES * (size_t)place);
+}
+INLINE size_t node_number(uint32_t place) { return place / PLACES; }
+
 #if CB_LANES == 1
-/* p[3] := x, y, z of the node index[0]. */
-INLINE void load_nodes(const S *vector, const uint32_t *index, T *p) {
-  const S *node = vector + STRIDE * (size_t)*index;
+/* p[3] := x, y, z of the node at place[0]. */
+INLINE void load_nodes(const S *vector, const uint32_t *place, T *p) {
+  const S *node = node_at(vector, *place);
   for (int i = 0; i < 3; i++) p[i] = node[i];
 }
 
-/* vector += f[3] at the node index[0]. */
-INLINE void add_to_nodes(S *vector, const uint32_t *index, size_t live, const T *f) {
-  S *node = vector + STRIDE * (size_t)*index;
+/* vector += f[3] at the node at place[0]. */
+INLINE void add_to_nodes(S *vector, const uint32_t *place, size_t live, const T *f) {
+  S *node = (S *)node_at(vector, *place);
   (void)live;
   for (int i = 0; i < 3; i++) node[i] += f[i];
 }
@@ -65,14 +73,13 @@ INLINE T join_nodes(const NODE *n) {
 #define NODE_OF(t, q) __builtin_shufflevector(t, t, 4 * (q), 4 * (q) + 1, 4 * (q) + 2, 4 * (q) + 3)
 #endif
 
-/* p[3] := x, y, z of the nodes index[LANES]. Floats are interleaved within 128
+/* p[3] := x, y, z of the nodes at place[LANES]. Floats are interleaved within 128
  * bits, doubles within 256: what the shuffle units do without crossing. */
-INLINE void load_nodes(const S *vector, const uint32_t *index, T *p) {
+INLINE void load_nodes(const S *vector, const uint32_t *place, T *p) {
   T g[4];
   for (int k = 0; k < 4; k++) {
     NODE n[QUADS];
-    for (int q = 0; q < QUADS; q++)
-      n[q] = *(const LOOSE_NODE *)(vector + 4 * (size_t)index[4 * q + k]);
+    for (int q = 0; q < QUADS; q++) n[q] = *(const LOOSE_NODE *)node_at(vector, place[4 * q + k]);
     g[k] = join_nodes(n);
   }
   if (sizeof(S) == 4) {
@@ -90,8 +97,8 @@ INLINE void load_nodes(const S *vector, const uint32_t *index, T *p) {
   }
 }
 
-/* vector += f[3] at the nodes index[live]. */
-INLINE void add_to_nodes(S *vector, const uint32_t *index, size_t live, const T *f) {
+/* vector += f[3] at the nodes at place[live]. */
+INLINE void add_to_nodes(S *vector, const uint32_t *place, size_t live, const T *f) {
   T zero = LIT(0), g[4];
   if (sizeof(S) == 4) {
     T low = SHUFFLE(f[0], f[1], 0, 4, 1, 5), high = SHUFFLE(f[0], f[1], 2, 6, 3, 7);
@@ -100,22 +107,37 @@ INLINE void add_to_nodes(S *vector, const uint32_t *index, size_t live, const T 
     g[2] = SHUFFLE(high, high2, 0, 1, 4, 5), g[3] = SHUFFLE(high, high2, 2, 3, 6, 7);
   } else {
     T even = SHUFFLE(f[0], f[1], 0, 4, 2, 6), odd = SHUFFLE(f[0], f[1], 1, 5, 3, 7);
-    T even2 = SHUFFLE(f[2], zero, 0, 4, 2, 6), odd2 = SHUFFLE(f[2], zero, 1, 5, 3, 7);
+    /* Not shuffled with zero: gcc 12 makes that a duplication for 8 lanes. */
+    MASK is_even = zero < zero;
+    for (int l = 0; l < LANES; l += 2) is_even[l] = -1;
+    T even2 = SELECT(is_even, f[2], zero);
+    T odd2 = SELECT(is_even, SHUFFLE(f[2], f[2], 1, 1, 3, 3), zero);
     g[0] = SHUFFLE(even, even2, 0, 1, 4, 5), g[2] = SHUFFLE(even, even2, 2, 3, 6, 7);
     g[1] = SHUFFLE(odd, odd2, 0, 1, 4, 5), g[3] = SHUFFLE(odd, odd2, 2, 3, 6, 7);
   }
-#define ADD_QUAD(q)                                                                                \
+#define ADD_QUAD(q, some)                                                                          \
   for (int k = 0; k < 4; k++)                                                                      \
-    if (4 * (q) + k < (int)live)                                                                   \
-  *(LOOSE_NODE *)(vector + 4 * (size_t)index[4 * (q) + k]) += NODE_OF(g[k], q)
-  ADD_QUAD(0);
-#if CB_LANES > 4
-  ADD_QUAD(1);
+    if (!(some) || 4 * (q) + k < (int)live)                                                        \
+  *(LOOSE_NODE *)node_at(vector, place[4 * (q) + k]) += NODE_OF(g[k], q)
+#if CB_LANES == 4
+#define ADD_QUADS(some) ADD_QUAD(0, some)
+#elif CB_LANES == 8
+#define ADD_QUADS(some)                                                                            \
+  ADD_QUAD(0, some);                                                                               \
+  ADD_QUAD(1, some)
+#else
+#define ADD_QUADS(some)                                                                            \
+  ADD_QUAD(0, some);                                                                               \
+  ADD_QUAD(1, some);                                                                               \
+  ADD_QUAD(2, some);                                                                               \
+  ADD_QUAD(3, some)
 #endif
-#if CB_LANES > 8
-  ADD_QUAD(2);
-  ADD_QUAD(3);
-#endif
+  if (live == LANES) {
+    ADD_QUADS(0);
+  } else {
+    ADD_QUADS(1);
+  }
+#undef ADD_QUADS
 #undef ADD_QUAD
 }
 #endif

@@ -110,17 +110,20 @@ INLINE void paper_forces(int sparse, int first, const T *R, const T *B, const T 
 typedef void product_nodes_fn(const struct cb_elements *E, const T *rest, const T *state,
                               const T *u, T *f);
 
-INLINE void drive_product_nodes(const struct cb_elements *E, const S *u, S *y,
+INLINE void drive_product_nodes(const struct cb_elements *E, size_t thread, const S *u, S *y,
                                 product_nodes_fn *product) {
-  clear_vector(E, y);
-  for (size_t p = 0; p < E->packs; p++) {
-    const uint32_t *tet = E->tet + p * 4 * LANES;
-    T du[12], f[12];
-    for (int j = 0; j < 4; j++) load_nodes(u, tet + j * LANES, du + 3 * j);
-    STAGE(STAGE_PRODUCT);
-    product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
-    STAGE(STAGE_SCATTER);
-    for (int j = 0; j < 4; j++) add_to_nodes(y, tet + j * LANES, live_lanes(E, p), f + 3 * j);
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      const uint32_t *tet = E->packs->node + p * 4 * LANES;
+      T du[12], f[12];
+      for (int j = 0; j < 4; j++) load_nodes(u, tet + j * LANES, du + 3 * j);
+      STAGE(STAGE_PRODUCT);
+      product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
+      STAGE(STAGE_SCATTER);
+      for (int j = 0; j < 4; j++) add_to_nodes(y, tet + j * LANES, live_lanes(&r, p), f + 3 * j);
+    }
+    part_end(E, thread, part);
   }
 }
 

@@ -31,10 +31,12 @@ INLINE void by_matrix(const struct cb_elements *E, const T *rest, const T *K, co
   }
 }
 
-void CB_NAME(cb_product_gradients)(const struct cb_elements *E, const void *u, void *y) {
-  product_loop(E, u, y, by_gradients);
+void CB_NAME(cb_product_gradients)(const struct cb_elements *E, size_t thread, const void *u,
+                                   void *y) {
+  product_loop(E, thread, u, y, by_gradients);
 }
 
-void CB_NAME(cb_product_matrix)(const struct cb_elements *E, const void *u, void *y) {
-  product_loop(E, u, y, by_matrix);
+void CB_NAME(cb_product_matrix)(const struct cb_elements *E, size_t thread, const void *u,
+                                void *y) {
+  product_loop(E, thread, u, y, by_matrix);
 }

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels/packs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/team.h"
+
+/* Units of one mesh, in the order of their lowest tetrahedra within a shape. */
+struct units {
+  const struct cb_mesh *mesh;
+  const struct cb_clusters *clusters; /* NULL: each tetrahedron is one */
+  size_t count, shapes;
+  uint8_t *thread; /* [count] whose chunk */
+  uint8_t *part;   /* [count] 0, 1, 2 as above */
+  uint64_t *users; /* [nodes] threads whose units have the node; NULL: one thread */
+};
+
+static const struct cb_template single = {4, 1, {{0, 1, 2, 3}}};
+
+static const struct cb_template *shape_of(const struct units *U, size_t shape) {
+  return U->clusters ? &U->clusters->shape[shape] : &single;
+}
+
+static size_t first_of(const struct units *U, size_t shape) {
+  return U->clusters ? U->clusters->first[shape] : shape == 0 ? 0 : U->count;
+}
+
+static const uint32_t *nodes_of(const struct units *U, size_t unit) {
+  return U->clusters ? U->clusters->node + CB_CLUSTER_NODES * unit : U->mesh->tet + 4 * unit;
+}
+
+static uint32_t tet_of(const struct units *U, size_t unit, size_t i) {
+  return U->clusters ? U->clusters->tet[CB_CLUSTER_TETS * unit + i] : (uint32_t)unit;
+}
+
+static uint32_t lowest_tet(const struct units *U, size_t unit, size_t tets) {
+  uint32_t lowest = tet_of(U, unit, 0);
+  for (size_t i = 1; i < tets; i++)
+    if (tet_of(U, unit, i) < lowest) lowest = tet_of(U, unit, i);
+  return lowest;
+}
+
+/* Chunks are equal numbers of tetrahedra, in the order of the mesh. */
+static void give_to_threads(struct units *U, size_t threads, const uint8_t *shape,
+                            uint32_t *unit_at) {
+  const size_t tets = U->mesh->tets;
+  for (size_t t = 0; t < tets; t++) unit_at[t] = UINT32_MAX;
+  for (size_t u = 0; u < U->count; u++) unit_at[lowest_tet(U, u, shape[u])] = (uint32_t)u;
+  for (size_t t = 0, done = 0; t < tets; t++)
+    if (unit_at[t] != UINT32_MAX) {
+      const size_t u = unit_at[t];
+      U->thread[u] = (uint8_t)((done + shape[u] / 2) * threads / tets);
+      done += shape[u];
+    }
+}
+
+static uint64_t bit(size_t thread) { return (uint64_t)1 << thread; }
+
+/* Threads that have one of the unit's nodes as well. */
+static uint64_t sharers(const struct units *U, size_t unit, size_t nodes) {
+  uint64_t all = 0;
+  for (size_t j = 0; j < nodes; j++) all |= U->users[nodes_of(U, unit)[j]];
+  return all & ~bit(U->thread[unit]);
+}
+
+static enum cb_status distribute(struct units *U, size_t threads) {
+  enum cb_status status = CB_MEMORY;
+  U->thread = calloc(U->count, 1);
+  U->part = malloc(U->count);
+  uint8_t *tets = malloc(U->count);
+  uint32_t *unit_at = malloc(U->mesh->tets * sizeof *unit_at);
+  if (threads > 1) U->users = calloc(U->mesh->nodes, sizeof *U->users);
+  if (!U->thread || !U->part || !tets || !unit_at || (threads > 1 && !U->users)) goto done;
+  memset(U->part, 1, U->count);
+  status = CB_OK;
+  if (threads == 1) goto done;
+  for (size_t s = 0; s < U->shapes; s++)
+    memset(tets + first_of(U, s), shape_of(U, s)->tets, first_of(U, s + 1) - first_of(U, s));
+  give_to_threads(U, threads, tets, unit_at);
+  for (size_t s = 0; s < U->shapes; s++)
+    for (size_t u = first_of(U, s); u < first_of(U, s + 1); u++)
+      for (size_t j = 0; j < shape_of(U, s)->nodes; j++)
+        U->users[nodes_of(U, u)[j]] |= bit(U->thread[u]);
+  for (size_t s = 0; s < U->shapes; s++)
+    for (size_t u = first_of(U, s); u < first_of(U, s + 1); u++) {
+      const uint64_t others = sharers(U, u, shape_of(U, s)->nodes);
+      if (others) U->part[u] = others >= bit(U->thread[u]) ? 0 : 2;
+    }
+done:
+  free(tets);
+  free(unit_at);
+  return status;
+}
+
+/* A pack before it has its place. */
+struct draft {
+  uint32_t unit[CB_LANES_MOST];
+  uint32_t position; /* lowest tetrahedron of its first unit */
+  uint32_t sequence;
+  uint16_t shape;
+  uint8_t part, live;
+};
+
+struct drafts {
+  struct draft *draft;
+  size_t count, room;
+};
+
+static bool grow(struct drafts *d) {
+  if (d->count < d->room) return true;
+  const size_t room = 2 * d->room + 64;
+  struct draft *larger = realloc(d->draft, room * sizeof *larger);
+  if (!larger) return false;
+  d->draft = larger, d->room = room;
+  return true;
+}
+
+/* Units of one pack are so far apart in the list: neighbours share nodes, and adding
+ * to a node that has just been added to waits for it. */
+static const size_t APART = 16;
+
+/* list[count] := units list[count] with each LANES * APART of them turned from rows
+ * into columns; what is left at the end stays. copy[count] is for work. */
+static void spread(size_t lanes, size_t count, uint32_t *list, uint32_t *copy) {
+  const size_t block = lanes * APART;
+  memcpy(copy, list, count * sizeof *list);
+  for (size_t b = 0; lanes > 1 && b + block <= count; b += block)
+    for (size_t i = 0; i < block; i++) list[b + i] = copy[b + i % lanes * APART + i / lanes];
+}
+
+/* A thread's units of one shape, those of part 0 first, those of part 2 last, into
+ * list; returns how many. */
+static size_t list_units(const struct units *U, size_t thread, size_t shape, uint32_t *list) {
+  size_t count = 0;
+  for (int part = 0; part < 3; part++)
+    for (size_t u = first_of(U, shape); u < first_of(U, shape + 1); u++)
+      if (U->thread[u] == thread && U->part[u] == part) list[count++] = (uint32_t)u;
+  return count;
+}
+
+/* A pack of mixed parts belongs to 0 if one of its units does, else to 2. */
+static bool draft_shape(const struct units *U, size_t lanes, size_t shape, size_t count,
+                        const uint32_t *list, struct drafts *d) {
+  for (size_t i = 0; i < count; i += lanes) {
+    if (!grow(d)) return false;
+    struct draft *pack = &d->draft[d->count++];
+    *pack = (struct draft){.shape = (uint16_t)shape, .part = 1, .sequence = (uint32_t)d->count};
+    pack->live = (uint8_t)(count - i < lanes ? count - i : lanes);
+    pack->position = lowest_tet(U, list[i], shape_of(U, shape)->tets);
+    for (size_t l = 0; l < lanes; l++) {
+      pack->unit[l] = list[i + (l < pack->live ? l : pack->live - 1u)];
+      const uint8_t part = U->part[pack->unit[l]];
+      if (part != 1 && pack->part != 0) pack->part = part;
+    }
+  }
+  return true;
+}
+
+/* Packs of a region follow each other, by shape within it: the next loop counts are
+ * then the last ones, and a region's nodes fit the cache. */
+static const uint32_t REGION = 4096; /* tetrahedra */
+
+static int by_place(const void *first, const void *second) {
+  const struct draft *a = first, *b = second;
+  if (a->part != b->part) return a->part - b->part;
+  const uint32_t p = a->position / REGION, q = b->position / REGION;
+  if (p != q) return p < q ? -1 : 1;
+  if (a->shape != b->shape) return a->shape - b->shape;
+  return (a->position > b->position) - (a->position < b->position);
+}
+
+/* Single elements: the pack that is not full stays the last of its chunk. */
+static int by_part(const void *first, const void *second) {
+  const struct draft *a = first, *b = second;
+  if (a->part != b->part) return a->part - b->part;
+  return (a->sequence > b->sequence) - (a->sequence < b->sequence);
+}
+
+/* Chunk of one thread: its packs are the drafts from `first` on. */
+static void make_chunk(const struct units *U, size_t thread, size_t first, const struct drafts *d,
+                       struct cb_chunk *c) {
+  *c = (struct cb_chunk){.part = {first, d->count, first, d->count}};
+  size_t part[3] = {0};
+  for (size_t i = first; i < d->count; i++) {
+    const struct draft *p = &d->draft[i];
+    part[p->part]++;
+    if (p->part == 1) continue;
+    for (size_t l = 0; l < p->live; l++)
+      c->after[p->part / 2] |=
+          sharers(U, p->unit[l], shape_of(U, p->shape)->nodes) & (bit(thread) - 1);
+  }
+  for (size_t k = 0, at = first; k < 3; k++) c->part[k] = at, at += part[k];
+  c->last_live = d->count > first ? d->draft[d->count - 1].live : 0;
+}
+
+static enum cb_status draft_packs(const struct units *U, struct cb_packs *P, struct drafts *d) {
+  uint32_t *list = malloc(2 * U->count * sizeof *list + 1);
+  bool room = list != NULL;
+  for (size_t t = 0; room && t < P->threads; t++) {
+    const size_t first = d->count;
+    for (size_t s = 0; room && s < U->shapes; s++) {
+      const size_t count = list_units(U, t, s, list);
+      spread(P->lanes, count, list, list + U->count);
+      room = draft_shape(U, P->lanes, s, count, list, d);
+    }
+    if (d->count > first)
+      qsort(d->draft + first, d->count - first, sizeof *d->draft, U->clusters ? by_place : by_part);
+    make_chunk(U, t, first, d, &P->chunk[t]);
+  }
+  free(list);
+  return room ? CB_OK : CB_MEMORY;
+}
+
+/* Copy what the drafts say into the arrays. */
+static bool fill(const struct units *U, const struct drafts *d, struct cb_packs *P) {
+  bool ordered = true;
+  for (size_t p = 0, node = 0, slot = 0; p < d->count; p++) {
+    const struct draft *draft = &d->draft[p];
+    const struct cb_template *shape = shape_of(U, draft->shape);
+    if (P->pack)
+      P->pack[p] = (struct cb_pack){(uint32_t)node, (uint32_t)slot, draft->shape, draft->live};
+    for (size_t l = 0; l < P->lanes; l++) {
+      const size_t u = draft->unit[l];
+      for (size_t j = 0; j < shape->nodes; j++)
+        P->node[(node + j) * P->lanes + l] = nodes_of(U, u)[j];
+      for (size_t i = 0; P->order && i < shape->tets; i++) {
+        const uint8_t *own = cb_permutation[U->clusters->order[CB_CLUSTER_TETS * u + i]];
+        const uint8_t code = (uint8_t)(own[0] | own[1] << 2 | own[2] << 4 | own[3] << 6);
+        P->order[(slot + i) * P->lanes + l] = code;
+        ordered = ordered && code == (0 | 1 << 2 | 2 << 4 | 3 << 6);
+      }
+    }
+    node += shape->nodes, slot += shape->tets;
+  }
+  return ordered;
+}
+
+static enum cb_status allocate(const struct units *U, const struct drafts *d, struct cb_packs *P) {
+  P->packs = d->count;
+  for (size_t p = 0; p < d->count; p++) {
+    P->nodes += shape_of(U, d->draft[p].shape)->nodes;
+    P->slots += shape_of(U, d->draft[p].shape)->tets;
+  }
+  if (P->nodes * P->lanes > UINT32_MAX) return CB_INPUT;
+  P->node = aligned_alloc(64, (P->nodes * P->lanes * sizeof *P->node + 63) / 64 * 64);
+  P->bytes = P->nodes * P->lanes * sizeof *P->node + P->threads * sizeof *P->chunk;
+  if (!P->node) return CB_MEMORY;
+  if (!U->clusters) return CB_OK;
+  P->pack = malloc(P->packs * sizeof *P->pack);
+  P->shape = malloc(U->shapes * sizeof *P->shape);
+  P->order = malloc(P->slots * P->lanes);
+  P->bytes += P->packs * sizeof *P->pack + U->shapes * sizeof *P->shape + P->slots * P->lanes;
+  if (!P->pack || !P->shape || !P->order) return CB_MEMORY;
+  memcpy(P->shape, U->clusters->shape, U->shapes * sizeof *P->shape);
+  return CB_OK;
+}
+
+enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t threads,
+                               bool clustered, struct cb_packs **out) {
+  struct units U = {.mesh = mesh, .count = mesh->tets, .shapes = 1};
+  struct drafts d = {0};
+  struct cb_clusters *clusters = NULL;
+  enum cb_status status = CB_MEMORY;
+  struct cb_packs *P = calloc(1, sizeof *P);
+  if (!P) return CB_MEMORY;
+  P->lanes = lanes, P->threads = threads;
+  P->chunk = calloc(threads, sizeof *P->chunk);
+  if (!P->chunk) goto done;
+  status = clustered ? cb_clusters_create(mesh, lanes, &clusters) : CB_OK;
+  if (status) goto done;
+  if (clusters) U.clusters = clusters, U.count = clusters->clusters, U.shapes = clusters->templates;
+  status = distribute(&U, threads);
+  if (!status) status = draft_packs(&U, P, &d);
+  if (!status) status = allocate(&U, &d, P);
+  if (status) goto done;
+  const bool ordered = fill(&U, &d, P);
+  if (ordered) cb_packs_disorder(P);
+  *out = P;
+  P = NULL;
+done:
+  free(d.draft);
+  free(U.thread);
+  free(U.part);
+  free(U.users);
+  cb_clusters_free(clusters);
+  cb_packs_free(P);
+  return status;
+}
+
+void cb_packs_disorder(struct cb_packs *P) {
+  if (P->order) P->bytes -= P->slots * P->lanes;
+  free(P->order);
+  P->order = NULL;
+}
+
+void cb_packs_free(struct cb_packs *P) {
+  if (!P) return;
+  free(P->node);
+  free(P->chunk);
+  free(P->pack);
+  free(P->shape);
+  free(P->order);
+  free(P);
+}

@@ -1,0 +1,217 @@
+/* cluster.c - see cluster.h. Node numbers of a pack of clusters stay in the first
+ * cache: u[3 j] to u[3 j + 2] are x, y, z of its local node j.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels/storage/cluster.h"
+
+enum { NODE_NUMBERS = 3 * CB_CLUSTER_NODES };
+
+INLINE void load_cluster(const S *vector, const uint32_t *node, size_t nodes, T *u) {
+  for (size_t j = 0; j < nodes; j++) load_nodes(vector, node + j * LANES, u + 3 * j);
+}
+
+INLINE void add_cluster(S *vector, const uint32_t *node, size_t nodes, size_t live, const T *f) {
+  STAGE(STAGE_SCATTER);
+  for (size_t j = 0; j < nodes; j++) add_to_nodes(vector, node + j * LANES, live, f + 3 * j);
+}
+
+INLINE void local_edges(const T *u, const uint8_t *vertex, T *e) {
+  const T *a = u + 3 * vertex[0];
+  for (int j = 0; j < 3; j++)
+    for (int i = 0; i < 3; i++) e[3 * j + i] = u[3 * vertex[j + 1] + i] - a[i];
+}
+
+/* sum += f on b, c, d and minus their sum on a. */
+INLINE void add_locally(T *sum, const uint8_t *vertex, const T *f) {
+  T all[12];
+  for (int i = 0; i < 3; i++) all[i] = -(f[i] + f[3 + i] + f[6 + i]);
+  for (int i = 0; i < 9; i++) all[3 + i] = f[i];
+  STAGE(STAGE_SCATTER);
+  for (int j = 0; j < 4; j++)
+    for (int i = 0; i < 3; i++) sum[3 * vertex[j] + i] = sum[3 * vertex[j] + i] + all[3 * j + i];
+}
+
+/* ---- the vertices' own order -------------------------------------------------- */
+
+/* is[4 j + s]: the own vertex j is vertex s of the shape. */
+INLINE void own_order(const uint8_t *order, MASK *is) {
+  MASK code = load_bytes(order);
+  for (int n = 0; n < 16; n++) is[n] = ((code >> (n / 4 * 2)) & 3) == n % 4;
+}
+
+/* e rows b, c, d: edges in the order of the shape, then in the vertices' own. */
+INLINE void to_own_order(const uint8_t *order, T *e) {
+  MASK is[16];
+  own_order(order, is);
+  for (int i = 0; i < 3; i++) {
+    T p[4];
+    for (int j = 0; j < 4; j++) /* the shape's a is the origin */
+      p[j] = SELECT(is[4 * j + 1], e[i],
+                    SELECT(is[4 * j + 2], e[3 + i], SELECT(is[4 * j + 3], e[6 + i], LIT(0))));
+    for (int j = 0; j < 3; j++) e[3 * j + i] = p[j + 1] - p[0];
+  }
+}
+
+/* f rows b, c, d: shares that sum to zero over the vertices, in the vertices' own
+ * order, then in that of the shape. */
+INLINE void to_shape_order(const uint8_t *order, T *f) {
+  MASK is[16];
+  own_order(order, is);
+  for (int i = 0; i < 3; i++) {
+    T b = f[i], c = f[3 + i], d = f[6 + i], a = -(b + c + d);
+    for (int s = 1; s < 4; s++)
+      f[3 * (s - 1) + i] = SELECT(is[s], a, SELECT(is[4 + s], b, SELECT(is[8 + s], c, d)));
+  }
+}
+
+/* ---- update -------------------------------------------------------------------- */
+
+/* Numbers of a pack's nodes. */
+struct pack_work {
+  const struct cb_pack *pack;
+  const struct cb_template *shape;
+  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS];
+};
+
+/* Rest data of a slot: kept, or made in own[REST_ISOTROPIC]. */
+INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *X,
+                             const uint8_t *vertex, const uint8_t *order, T *own) {
+  if (E->rest) return E->rest + slot * E->rest_numbers;
+  T e[9];
+  STAGE(STAGE_REST);
+  local_edges(X, vertex, e);
+  if (order) to_own_order(order, e);
+  rest_called(E, e, own);
+  return own;
+}
+
+/* The i-th tetrahedron of a pack's clusters. */
+INLINE void update_slot(struct cb_elements *E, struct pack_work *W, size_t i, bool moving, T h,
+                        update_pack_fn *update, enum cb_keep keep) {
+  const size_t slot = W->pack->slot + i;
+  const uint8_t *vertex = W->shape->vertex[i];
+  const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
+  T own[REST_ISOTROPIC], e[9], ev[9], f[9], state[18];
+  T *kept = E->state + slot * E->state_numbers;
+  const T *rest = rest_of_slot(E, slot, W->X, vertex, order, own);
+  STAGE(STAGE_FRAME);
+  local_edges(W->x, vertex, e);
+  if (moving) local_edges(W->v, vertex, ev);
+  if (order) {
+    to_own_order(order, e);
+    if (moving) to_own_order(order, ev);
+  }
+  update(E, rest, e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
+         keep == KEEP_STATE ? kept : state, f);
+  if (keep == KEEP_SCALE) kept[0] = rest[REST_W];
+  if (keep == KEEP_GRADIENTS) {
+    if (order) to_shape_order(order, state);
+    for (int n = 0; n < 9; n++) kept[n] = state[n];
+  }
+  if (order) to_shape_order(order, f);
+  add_locally(W->f, vertex, f);
+}
+
+void drive_update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
+                           S *out, update_pack_fn *update, enum cb_keep keep) {
+  const struct cb_packs *P = E->packs;
+  struct pack_work W;
+  if (E->x) {
+    size_t first, last;
+    cb_team_share(STRIDE * E->nodes, P->threads, thread, &first, &last);
+    for (size_t i = first; i < last; i++) E->x[i] = x[i];
+  }
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      W.pack = &P->pack[p];
+      W.shape = &P->shape[W.pack->shape];
+      const uint32_t *node = P->node + (size_t)W.pack->node * LANES;
+      if (!E->rest) load_cluster(E->X, node, W.shape->nodes, W.X);
+      load_cluster(x, node, W.shape->nodes, W.x);
+      if (v) load_cluster(v, node, W.shape->nodes, W.v);
+      for (size_t n = 0; n < 3u * W.shape->nodes; n++) W.f[n] = LIT(0);
+      for (size_t i = 0; i < W.shape->tets; i++)
+        update_slot(E, &W, i, v != NULL, LIT(h), update, keep);
+      add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
+    }
+    part_end(E, thread, part);
+  }
+}
+
+/* ---- products ------------------------------------------------------------------- */
+
+/* One slot of a product, for edges du[9] and, if it is read, edges e[9] of the last
+ * update's positions: f[9] := share on b, c, d. */
+typedef void slot_product_fn(const struct cb_elements *E, size_t slot, product_pack_fn *model,
+                             const T *e, const T *du, T *f);
+
+INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
+                             slot_product_fn *product, bool positions, product_pack_fn *model) {
+  const struct cb_packs *P = E->packs;
+  for (int part = 0; part < 3; part++) {
+    const struct range r = part_begin(E, thread, part);
+    for (size_t p = r.first; p < r.last; p++) {
+      const struct cb_pack *pack = &P->pack[p];
+      const struct cb_template *shape = &P->shape[pack->shape];
+      const uint32_t *node = P->node + (size_t)pack->node * LANES;
+      T local[NODE_NUMBERS], x[NODE_NUMBERS], sum[NODE_NUMBERS];
+      load_cluster(u, node, shape->nodes, local);
+      if (positions) load_cluster(E->x, node, shape->nodes, x);
+      for (size_t n = 0; n < 3u * shape->nodes; n++) sum[n] = LIT(0);
+      for (size_t i = 0; i < shape->tets; i++) {
+        const uint8_t *vertex = shape->vertex[i];
+        T e[9], du[9], f[9];
+        STAGE(STAGE_PRODUCT);
+        if (positions) local_edges(x, vertex, e);
+        local_edges(local, vertex, du);
+        product(E, pack->slot + i, model, e, du, f);
+        add_locally(sum, vertex, f);
+      }
+      add_cluster(y, node, shape->nodes, pack->live, sum);
+    }
+    part_end(E, thread, part);
+  }
+}
+
+INLINE void by_gradients(const struct cb_elements *E, size_t slot, product_pack_fn *model,
+                         const T *e, const T *du, T *f) {
+  (void)model, (void)e;
+  gradients_product(E->k, E->state + 9 * slot, du, f);
+}
+
+INLINE void by_positions(const struct cb_elements *E, size_t slot, product_pack_fn *model,
+                         const T *e, const T *du, T *f) {
+  T w[9], scale = E->state[slot];
+  (void)model;
+  edge_cofactors(e, w);
+  if (E->policy == POLICY_UPDATED_VOLUME) scale = scale / dot3(e, w);
+  for (int i = 0; i < 9; i++) w[i] = scale * w[i];
+  gradients_product(E->k, w, du, f);
+}
+
+INLINE void by_model(const struct cb_elements *E, size_t slot, product_pack_fn *model, const T *e,
+                     const T *du, T *f) {
+  const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
+  T u[9];
+  (void)e;
+  for (int i = 0; i < 9; i++) u[i] = du[i];
+  if (order) to_own_order(order, u);
+  model(E, E->rest + slot * E->rest_numbers, E->state + slot * E->state_numbers, u, f);
+  if (order) to_shape_order(order, f);
+}
+
+void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t thread,
+                                           const void *u, void *y) {
+  product_clusters(E, thread, u, y, by_gradients, false, NULL);
+}
+
+void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,
+                                   void *y) {
+  product_clusters(E, thread, u, y, by_positions, true, NULL);
+}
+
+void drive_product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
+                            product_pack_fn *product) {
+  product_clusters(E, thread, u, y, by_model, false, product);
+}
