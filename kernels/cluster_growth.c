@@ -55,9 +55,8 @@ enum cb_status cb_growth_create(const struct cb_free *f, struct cb_growth **out)
   struct cb_growth *g = calloc(1, sizeof *g);
   if (!g) return CB_MEMORY;
   g->free = f;
-  g->nodes_of = calloc(f->mesh->tets + 1, 1);
-  g->vertices_of = calloc(f->mesh->tets + 1, 1);
-  if (!g->nodes_of || !g->vertices_of) {
+  g->shared = calloc(f->mesh->tets + 1, sizeof *g->shared);
+  if (!g->shared) {
     cb_growth_free(g);
     return CB_MEMORY;
   }
@@ -67,21 +66,19 @@ enum cb_status cb_growth_create(const struct cb_free *f, struct cb_growth **out)
 
 void cb_growth_free(struct cb_growth *g) {
   if (!g) return;
-  free(g->nodes_of);
-  free(g->vertices_of);
+  free(g->shared);
   free(g);
 }
 
-static const uint8_t bits[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
-
 static void share(struct cb_growth *g, uint32_t corner, size_t slot) {
+  static const uint8_t bits[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
   const uint32_t tet = corner / 4;
-  if (g->vertices_of[tet] >> corner % 4 & 1) return;
-  g->nodes_of[tet] |= (uint8_t)(1u << slot);
-  g->vertices_of[tet] |= (uint8_t)(1u << corner % 4);
-  const uint8_t shared = bits[g->vertices_of[tet]];
-  if (shared == 3) g->near[g->nears++] = tet;
-  if (shared == 4 && g->c.tets < TETS) g->c.tet[g->c.tets++] = tet;
+  struct cb_shared *s = g->shared + tet;
+  if (s->vertices >> corner % 4 & 1) return;
+  s->nodes |= (uint8_t)(1u << slot);
+  s->vertices |= (uint8_t)(1u << corner % 4);
+  if (bits[s->vertices] == 3) g->near[g->nears++] = tet;
+  if (bits[s->vertices] == 4 && g->c.tets < TETS) g->c.tet[g->c.tets++] = tet;
 }
 
 static void share_node(struct cb_growth *g, uint32_t tet, size_t slot) {
@@ -95,7 +92,8 @@ static void see(struct cb_growth *g, uint32_t tet) {
     share_node(g, tet, (size_t)__builtin_ctz(hubs));
 }
 
-void cb_growth_add(struct cb_growth *g, uint32_t node) {
+/* The cluster with that node and the free tetrahedra that it closes. */
+static void add(struct cb_growth *g, uint32_t node) {
   const struct cb_free *f = g->free;
   const size_t slot = g->c.nodes++;
   g->c.node[slot] = node;
@@ -106,18 +104,18 @@ void cb_growth_add(struct cb_growth *g, uint32_t node) {
   }
   for (uint32_t i = 0; i < around && i < CB_HUB; i++) {
     const uint32_t corner = f->corner[f->start[node] + i];
-    if (!g->nodes_of[corner / 4]) see(g, corner / 4);
+    if (!g->shared[corner / 4].nodes) see(g, corner / 4);
     share(g, corner, slot);
   }
   g->tets_of[g->c.nodes] = g->c.tets;
 }
 
 void cb_growth_start(struct cb_growth *g, uint32_t seed) {
-  for (size_t i = 0; i < g->seens; i++) g->nodes_of[g->seen[i]] = g->vertices_of[g->seen[i]] = 0;
+  for (size_t i = 0; i < g->seens; i++) g->shared[g->seen[i]] = (struct cb_shared){0, 0};
   g->seens = g->nears = 0;
   g->hubs = g->c.nodes = g->c.tets = 0;
   see(g, seed); /* four hubs would not */
-  for (size_t j = 0; j < 4; j++) cb_growth_add(g, g->free->mesh->tet[4 * (size_t)seed + j]);
+  for (size_t j = 0; j < 4; j++) add(g, g->free->mesh->tet[4 * (size_t)seed + j]);
 }
 
 struct candidate {
@@ -129,7 +127,7 @@ static size_t find_candidates(const struct cb_growth *g, struct candidate c[CAND
   size_t n = 0;
   for (size_t i = 0; i < g->nears; i++) {
     const uint32_t tet = g->near[i];
-    const unsigned missing = 15u & ~g->vertices_of[tet];
+    const unsigned missing = 15u & ~g->shared[tet].vertices;
     if (!missing) continue;
     const uint32_t node = g->free->mesh->tet[4 * (size_t)tet + (size_t)__builtin_ctz(missing)];
     size_t k = 0;
@@ -138,14 +136,6 @@ static size_t find_candidates(const struct cb_growth *g, struct candidate c[CAND
     if (k == n) c[n++] = (struct candidate){node, 0};
     c[k].closes++;
   }
-  return n;
-}
-
-size_t cb_growth_neighbours(const struct cb_growth *g, size_t most, uint32_t *node) {
-  struct candidate c[CANDIDATES];
-  size_t n = find_candidates(g, c);
-  if (n > most) n = most;
-  for (size_t i = 0; i < n; i++) node[i] = c[i].node;
   return n;
 }
 
@@ -161,6 +151,6 @@ void cb_growth_finish(struct cb_growth *g) {
         best = i;
     }
     if (!best) return;
-    cb_growth_add(g, best->node);
+    add(g, best->node);
   }
 }

@@ -18,9 +18,8 @@ struct cb_cluster {
  * node n are corner[start[n]] to corner[start[n] + free[n] - 1]. */
 struct cb_free {
   const struct cb_mesh *mesh;
-  size_t *start;
-  uint32_t *free, *corner;
-  size_t *at; /* [4*tets] place of each free corner */
+  uint32_t *start, *free, *corner;
+  uint32_t *at; /* [4*tets] place of each free corner */
 };
 
 /* All tetrahedra are free. CB_MEMORY. */
@@ -33,16 +32,21 @@ void cb_free_return(struct cb_free *f, uint32_t tet);
  * found from its other nodes, in time that does not grow with them. */
 enum { CB_HUB = 256 };
 
+/* Bit masks: which of the cluster's nodes a tetrahedron has, which of its vertices
+ * they are. */
+struct cb_shared {
+  uint8_t nodes, vertices;
+};
+
 /* What a growing cluster sees: tetrahedra with at least one of its nodes. */
 struct cb_growth {
   const struct cb_free *free;
   struct cb_cluster c;
   uint8_t tets_of[CB_CLUSTER_NODES + 1]; /* tetrahedra of the first n nodes */
   uint8_t hubs;                          /* bit mask of nodes that were not scanned whole */
-  uint8_t *nodes_of, *vertices_of; /* [mesh tets] bit masks: which of the cluster's nodes, which
-                                      of its own vertices a tetrahedron shares with it */
+  struct cb_shared *shared;              /* [mesh tets] */
   uint32_t seen[CB_CLUSTER_NODES * CB_HUB + 1], near[CB_CLUSTER_NODES * CB_HUB + 1];
-  size_t seens, nears; /* near: three nodes or all are shared */
+  size_t seens, nears; /* near: three nodes are shared, or all */
 };
 
 enum cb_status cb_growth_create(const struct cb_free *f, struct cb_growth **out);
@@ -50,10 +54,6 @@ void cb_growth_free(struct cb_growth *g); /* may be NULL */
 
 /* c := the free tetrahedra on the four nodes of the seed, at most CB_CLUSTER_TETS. */
 void cb_growth_start(struct cb_growth *g, uint32_t seed);
-/* c := with that node and the free tetrahedra that it closes. */
-void cb_growth_add(struct cb_growth *g, uint32_t node);
-/* node[most] := nodes each of which would close a free tetrahedron; their number. */
-size_t cb_growth_neighbours(const struct cb_growth *g, size_t most, uint32_t *node);
 /* Add the nodes that close the most, until there is no room or no such node; of
  * equals that with the fewest free tetrahedra, so that no single ones are left. */
 void cb_growth_finish(struct cb_growth *g);

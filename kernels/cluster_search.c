@@ -8,14 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  NODES = CB_CLUSTER_NODES,
-  TETS = CB_CLUSTER_TETS,
-  STARTS = 4,
-  BUCKETS = 256,
-  DENSE = 8,
-  ROUNDS = 2
-};
+enum { BUCKETS = 256, DENSE = 8 };
 static const uint32_t NONE = UINT32_MAX;
 static const uint8_t UNTRIED = 255;
 
@@ -33,7 +26,7 @@ struct work {
   struct cb_free free;
   struct cb_growth *growth;
   struct queue queue;
-  uint8_t *reach; /* [tets] tetrahedra in the best cluster found there, at most */
+  uint8_t *reach; /* [tets] tetrahedra in the cluster last found there, at most */
   bool *frequent; /* [frequents] the shapes that are allowed, NULL: all */
   size_t frequents;
 };
@@ -70,29 +63,10 @@ static uint32_t first_node(const struct queue *q) {
 
 /* ---- clusters ---------------------------------------------------------------------- */
 
-/* The first so many tetrahedra of the growing cluster. */
+/* The first tetrahedra of the growing cluster. */
 static struct cb_masks grown_masks(const struct cb_growth *g, size_t tets) {
   struct cb_masks m = {{0}};
-  for (size_t i = 0; i < tets; i++) {
-    const uint8_t mask = g->nodes_of[g->c.tet[i]];
-    size_t n = i;
-    for (; n > 0 && m.of[n - 1] > mask; n--) m.of[n] = m.of[n - 1];
-    m.of[n] = mask;
-  }
-  return m;
-}
-
-struct cb_masks cb_cluster_masks(const struct cb_mesh *mesh, const struct cb_cluster *c) {
-  struct cb_masks m = {{0}};
-  for (size_t i = 0; i < c->tets; i++) {
-    unsigned mask = 0;
-    for (size_t j = 0; j < 4; j++)
-      for (size_t v = 0; v < c->nodes; v++)
-        if (mesh->tet[4 * (size_t)c->tet[i] + j] == c->node[v]) mask |= 1u << v;
-    size_t n = i;
-    for (; n > 0 && m.of[n - 1] > mask; n--) m.of[n] = m.of[n - 1];
-    m.of[n] = (uint8_t)mask;
-  }
+  for (size_t i = 0; i < tets; i++) cb_masks_insert(&m, i, g->shared[g->c.tet[i]].nodes);
   return m;
 }
 
@@ -110,47 +84,24 @@ static enum cb_status cut(struct work *w) {
   }
 }
 
-/* Free tetrahedra that only touch the cluster, each as often as it has its nodes. */
-static size_t left_around(const struct work *w, const struct cb_cluster *c) {
-  size_t sum = 0;
-  for (size_t v = 0; v < c->nodes; v++) sum += w->free.free[c->node[v]];
-  return sum - 4 * (size_t)c->tets;
-}
-
-/* More tetrahedra a node; of equals that which leaves fewer around. */
-static bool is_better(const struct work *w, const struct cb_cluster *a,
-                      const struct cb_cluster *b) {
-  const unsigned x = (unsigned)a->tets * b->nodes, y = (unsigned)b->tets * a->nodes;
-  return x > y || (x == y && left_around(w, a) < left_around(w, b));
-}
-
-/* *best := of what grows from the seed over each of its faces. */
-static enum cb_status grow(struct work *w, uint32_t seed, struct cb_cluster *best) {
-  struct cb_growth *g = w->growth;
-  uint32_t over[STARTS];
-  cb_growth_start(g, seed);
-  const size_t n = cb_growth_neighbours(g, STARTS, over);
-  for (size_t i = 0; i == 0 || i < n; i++) {
-    if (i > 0) cb_growth_start(g, seed);
-    if (n > 0 && g->c.tets < TETS) cb_growth_add(g, over[i]);
-    cb_growth_finish(g);
-    if (cut(w)) return CB_MEMORY;
-    if (i == 0 || is_better(w, &g->c, best)) *best = g->c;
-  }
+/* Room for one more cluster, and a count of each shape. */
+static enum cb_status more_clusters(struct cb_search *s) {
+  const size_t counted = s->room[0];
+  size_t *count = cb_grown(s->count, &s->room[0], s->shapes.shapes, sizeof *count);
+  if (!count) return CB_MEMORY;
+  s->count = count;
+  memset(count + counted, 0, (s->room[0] - counted) * sizeof *count);
+  struct cb_cluster *cluster = cb_grown(s->cluster, &s->room[1], s->clusters + 1, sizeof *cluster);
+  if (!cluster) return CB_MEMORY;
+  s->cluster = cluster;
   return CB_OK;
 }
 
 static enum cb_status keep(struct work *w, const struct cb_cluster *c) {
   struct cb_search *s = w->s;
-  const size_t counted = s->room[0];
-  struct cb_cluster *cluster = cb_grown(s->cluster, &s->room[1], s->clusters + 1, sizeof *cluster);
-  if (cluster) s->cluster = cluster;
-  size_t *count = cb_grown(s->count, &s->room[0], s->shapes.shapes, sizeof *count);
-  if (!cluster || !count) return CB_MEMORY;
-  s->count = count;
-  memset(count + counted, 0, (s->room[0] - counted) * sizeof *count);
+  if (more_clusters(s)) return CB_MEMORY;
   s->cluster[s->clusters++] = *c;
-  count[c->shape]++;
+  s->count[c->shape]++;
   for (size_t i = 0; i < c->tets; i++) cb_free_take(&w->free, c->tet[i]);
   for (size_t v = 0; v < c->nodes; v++) queue_node(&w->queue, c->node[v], w->free.free[c->node[v]]);
   return CB_OK;
@@ -182,20 +133,22 @@ static enum cb_status search(struct work *w, uint8_t tets) {
   for (size_t n = w->free.mesh->nodes; n-- > 0;)
     queue_node(&w->queue, (uint32_t)n, w->free.free[n]);
   for (uint32_t node; (node = first_node(&w->queue)) != NONE;) {
-    struct cb_cluster best;
     const uint32_t seed = choose_seed(w, node, tets);
     if (seed == NONE) {
       unlink_node(&w->queue, node);
       continue;
     }
-    if (grow(w, seed, &best)) return CB_MEMORY;
-    if (best.tets >= tets) {
-      if (keep(w, &best)) return CB_MEMORY;
+    const struct cb_cluster *c = &w->growth->c;
+    cb_growth_start(w->growth, seed);
+    cb_growth_finish(w->growth);
+    if (cut(w)) return CB_MEMORY;
+    if (c->tets >= tets) {
+      if (keep(w, c)) return CB_MEMORY;
       continue;
     }
-    w->reach[seed] = best.tets;
-    for (size_t i = 0; i < best.tets; i++)
-      if (w->reach[best.tet[i]] > best.tets) w->reach[best.tet[i]] = best.tets;
+    w->reach[seed] = c->tets;
+    for (size_t i = 0; i < c->tets; i++)
+      if (w->reach[c->tet[i]] > c->tets) w->reach[c->tet[i]] = c->tets;
   }
   return CB_OK;
 }
@@ -260,10 +213,8 @@ enum cb_status cb_search_create(const struct cb_mesh *mesh, size_t lanes, struct
   enum cb_status status = work_create(mesh, &made, &w);
   if (!status) status = cb_shapes_create(&made.shapes);
   if (!status) status = search_all(&w);
-  for (size_t i = 0; i < ROUNDS && !status; i++) {
-    status = dissolve(&w, lanes);
-    if (!status) status = search_all(&w);
-  }
+  if (!status) status = dissolve(&w, lanes);
+  if (!status) status = search_all(&w);
   work_free(&w);
   if (status) {
     cb_search_free(&made);

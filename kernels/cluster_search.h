@@ -10,7 +10,7 @@
 
 struct cb_search {
   struct cb_shapes shapes;
-  size_t *count; /* [shapes.shapes] clusters of that shape */
+  size_t *count; /* [shapes.shapes] clusters of each shape */
   size_t clusters;
   struct cb_cluster *cluster;
   size_t room[2]; /* of count and cluster */
@@ -19,8 +19,5 @@ struct cb_search {
 /* Each tetrahedron of the mesh in one cluster. Errors as cb_clusters_create. */
 enum cb_status cb_search_create(const struct cb_mesh *mesh, size_t lanes, struct cb_search *s);
 void cb_search_free(struct cb_search *s); /* a zeroed one is allowed */
-
-/* The tetrahedra as bit masks of the cluster's nodes. */
-struct cb_masks cb_cluster_masks(const struct cb_mesh *mesh, const struct cb_cluster *c);
 
 #endif

@@ -36,15 +36,9 @@ static uint8_t renumbered(uint8_t mask, const uint8_t *place) {
   return (uint8_t)m;
 }
 
-static void insert(uint8_t *sorted, size_t n, uint8_t value, bool descending) {
-  for (; n > 0 && (descending ? sorted[n - 1] < value : sorted[n - 1] > value); n--)
-    sorted[n] = sorted[n - 1];
-  sorted[n] = value;
-}
-
-/* part[PART] := what node v adds to the code as number n; returns its length. */
+/* part[PART], zeros, := what node v adds to the code as number n; returns its length. */
 static size_t code_part(struct canon *c, unsigned numbered, size_t n, size_t v, uint8_t *part) {
-  uint8_t *completed = part + 1 + n;
+  struct cb_masks completed;
   size_t length = 0;
   part[0] = c->together[v][v];
   for (size_t i = 0; i < n; i++) part[1 + i] = c->together[v][c->node[i]];
@@ -52,9 +46,9 @@ static size_t code_part(struct canon *c, unsigned numbered, size_t n, size_t v, 
   numbered |= 1u << v;
   for (size_t i = 0; i < c->tets; i++)
     if (c->mask[i] >> v & 1 && (c->mask[i] & ~numbered) == 0)
-      insert(completed, length++, (uint8_t)~renumbered(c->mask[i], c->place), true);
-  completed[length++] = 0;
-  return 1 + n + length;
+      cb_masks_insert(&completed, length++, renumbered(c->mask[i], c->place));
+  for (size_t i = 0; i < length; i++) part[1 + n + i] = (uint8_t)~completed.of[i];
+  return 1 + n + length + 1;
 }
 
 static void keep_numbering(struct canon *c, size_t length) {
@@ -92,7 +86,7 @@ static void number_rest(struct canon *c, unsigned numbered, size_t n, size_t len
 static void renumber(const struct cb_masks *masks, const uint8_t *place, struct cb_masks *out) {
   *out = (struct cb_masks){{0}};
   for (size_t i = 0; i < TETS && masks->of[i]; i++)
-    insert(out->of, i, renumbered(masks->of[i], place), false);
+    cb_masks_insert(out, i, renumbered(masks->of[i], place));
 }
 
 static void number_canonically(const struct cb_masks *masks, struct canon *c) {

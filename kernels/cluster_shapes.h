@@ -25,6 +25,12 @@ struct cb_masks {
   uint8_t of[CB_CLUSTER_TETS];
 };
 
+/* Put a mask to the first n. */
+static inline void cb_masks_insert(struct cb_masks *masks, size_t n, uint8_t mask) {
+  for (; n > 0 && masks->of[n - 1] > mask; n--) masks->of[n] = masks->of[n - 1];
+  masks->of[n] = mask;
+}
+
 /* How a numbered cluster becomes its shape: place[node] is the shape's node. */
 struct cb_numbering {
   uint8_t place[CB_CLUSTER_NODES];

@@ -26,14 +26,24 @@ struct labels {
   uint8_t order[TETS];
 };
 
-/* The place of local node v in the mesh's tetrahedron. */
 static uint8_t local_node(const struct cb_cluster *c, uint32_t node) {
   uint8_t v = 0;
   while (c->node[v] != node) v++;
   return v;
 }
 
-/* The permutation that gives four numbers from four ascending ones. */
+static struct cb_masks masks_of(const struct cb_mesh *mesh, const struct cb_cluster *c) {
+  struct cb_masks m = {{0}};
+  for (size_t i = 0; i < c->tets; i++) {
+    unsigned mask = 0;
+    for (size_t j = 0; j < 4; j++)
+      mask |= 1u << local_node(c, mesh->tet[4 * (size_t)c->tet[i] + j]);
+    cb_masks_insert(&m, i, (uint8_t)mask);
+  }
+  return m;
+}
+
+/* Of the permutations the one that gives these four numbers from the ascending. */
 static uint8_t order_of(const uint8_t number[4]) {
   uint8_t order = 0;
   static const uint8_t weight[4] = {6, 2, 1, 0};
@@ -69,7 +79,7 @@ static enum cb_status place_cluster(const struct cb_mesh *mesh, struct cb_search
                                     const struct cb_cluster *c, size_t at,
                                     struct cb_clusters *out) {
   const struct cb_numbered *known;
-  const struct cb_masks masks = cb_cluster_masks(mesh, c);
+  const struct cb_masks masks = masks_of(mesh, c);
   if (cb_shapes_find(&s->shapes, &masks, &known)) return CB_MEMORY;
   struct labels best = {{0}, {0}}, l = best;
   const struct cb_numbering *chosen = NULL;

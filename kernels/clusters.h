@@ -37,9 +37,9 @@ extern const uint8_t cb_permutation[24][4];
 /* Each tetrahedron of the mesh in exactly one cluster; shapes that would not fill a
  * few packs of that many lanes are avoided. Unused places of node, tet and order
  * repeat the first. Any mesh is allowed: superposed or repeated tetrahedra, edges and
- * faces of many, isolated nodes; node indices are not checked. Linear time (about
- * 3 us a tetrahedron), the same result for the same mesh. CB_MEMORY; CB_INPUT for
- * 2^30 tetrahedra or more. */
+ * faces of many, isolated nodes; that nodes exist, and none is twice in a tetrahedron, is
+ * not checked. Linear time (about 3 us a tetrahedron), the same result for the same mesh.
+ * CB_MEMORY; CB_INPUT for 2^30 tetrahedra or more. */
 enum cb_status cb_clusters_create(const struct cb_mesh *mesh, size_t lanes,
                                   struct cb_clusters **out);
 void cb_clusters_free(struct cb_clusters *c); /* may be NULL */
