@@ -25,6 +25,10 @@ struct cb_bench_scene {
 /* nx*ny*nz cells of ten tetrahedra. CB_MEMORY. */
 enum cb_status cb_bench_scene_grid(const size_t cells[3], unsigned long seed,
                                    struct cb_bench_scene *scene);
+/* The same block as a mesh without any regularity, its numbers shuffled
+ * (cb_mesh_irregular), then in the program's own order. CB_MEMORY. */
+enum cb_status cb_bench_scene_irregular(const size_t cells[3], unsigned long seed,
+                                        struct cb_bench_scene *scene);
 /* See cb_mesh_read; CB_INPUT also for a mesh without height. Nodes and tetrahedra
  * come in the program's own order (cb_order_create), not in the file's. */
 enum cb_status cb_bench_scene_mesh(const char *path, unsigned long seed,

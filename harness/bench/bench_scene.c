@@ -112,6 +112,21 @@ static enum cb_status put_in_order(struct cb_mesh *mesh) {
   return status;
 }
 
+enum cb_status cb_bench_scene_irregular(const size_t cells[3], unsigned long seed,
+                                        struct cb_bench_scene *scene) {
+  struct cb_bench_scene made = {0};
+  enum cb_status status = cb_mesh_irregular(cells[0], cells[1], cells[2],
+                                            HEIGHT / (double)cells[2], seed, &made.mesh);
+  if (status) return status;
+  status = put_in_order(&made.mesh);
+  if (!status) status = complete(seed, &made);
+  if (status)
+    cb_bench_scene_free(&made);
+  else
+    *scene = made;
+  return status;
+}
+
 enum cb_status cb_bench_scene_mesh(const char *path, unsigned long seed,
                                    struct cb_bench_scene *scene) {
   struct cb_bench_scene made = {0};

@@ -16,6 +16,14 @@ void cb_mesh_free(struct cb_mesh *mesh); /* and zero it; a zeroed mesh is allowe
  * tetrahedra. CB_INPUT for a zero count or a size that is not positive. */
 enum cb_status cb_mesh_grid(size_t nx, size_t ny, size_t nz, double edge, struct cb_mesh *mesh);
 
+/* A block of nx*ny*nz cubic cells of that edge length (m) with an irregular mesh,
+ * 6 tetrahedra a cell, share 1, the same again for the same seed: conforming, no
+ * two nodes alike, every tetrahedron positively oriented with at least a fifth of
+ * the mean volume; nodes, tetrahedra and the vertices of each come in random
+ * sequence. CB_INPUT as for the grid; CB_MEMORY. */
+enum cb_status cb_mesh_irregular(size_t nx, size_t ny, size_t nz, double edge, unsigned long seed,
+                                 struct cb_mesh *mesh);
+
 /* Read by the name's ending: .node or .ele (TetGen pair, either names both; 0-
  * or 1-based, comments, attributes and markers skipped) or .msh (Gmsh 2.2 and
  * 4.1, ASCII; elements that are not 4-node tetrahedra are skipped). Nodes that
