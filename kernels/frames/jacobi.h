@@ -18,7 +18,7 @@ INLINE void jacobi_angle(T p, T q, T r, T *c, T *s) {
   T d = ABS(x) + h;
   d = SELECT(d > LIT(0), d, LIT(1));
   T t = SELECT(x < LIT(0), -y, y) / d;
-  *c = LIT(1) / SQRT(LIT(1) + t * t);
+  *c = RSQRT(LIT(1) + t * t);
   *s = t * *c;
 }
 
@@ -78,11 +78,11 @@ INLINE void frame_from_principal(T *n, T *A, T *V, T *R) {
   principal_swap(n[0] < n[1], n, A, V, 0, 1);
   principal_swap(n[1] < n[2], n, A, V, 1, 2);
   principal_swap(n[0] < n[1], n, A, V, 0, 1);
-  T inverse = LIT(1) / SQRT(n[0]);
+  T inverse = RSQRT(n[0]);
   for (int i = 0; i < 3; i++) u[i] = A[3 * i] * inverse;
   for (int i = 0; i < 3; i++) along = along + u[i] * A[3 * i + 1];
   for (int i = 0; i < 3; i++) v[i] = A[3 * i + 1] - along * u[i];
-  inverse = LIT(1) / SQRT(dot3(v, v));
+  inverse = RSQRT(dot3(v, v));
   for (int i = 0; i < 3; i++) v[i] = v[i] * inverse;
   cross3(u, v, w);
   for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = w[i];

@@ -37,7 +37,7 @@ INLINE void quaternion_from(const T *R, T *q) {
     best = SELECT(more, d[n], best);
     for (int i = 0; i < 4; i++) q[i] = SELECT(more, rows[n][i], q[i]);
   }
-  T inverse = LIT(1) / SQRT(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  T inverse = RSQRT(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (int i = 0; i < 4; i++) q[i] = q[i] * inverse;
 }
 
@@ -63,7 +63,7 @@ INLINE void frame_polar_quaternion(const T *F, T *q, T *R) {
     p[1] = q[1] + x * q[0] + y * q[3] - z * q[2];
     p[2] = q[2] + y * q[0] + z * q[1] - x * q[3];
     p[3] = q[3] + z * q[0] + x * q[2] - y * q[1];
-    T inverse = LIT(1) / SQRT(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    T inverse = RSQRT(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
     for (int i = 0; i < 4; i++) q[i] = p[i] * inverse;
     quaternion_matrix(q, R);
   }
