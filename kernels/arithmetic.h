@@ -101,35 +101,37 @@ INLINE int ANY(MASK m) {
 #endif
 #define LIT(x) splat((S)(x))
 
-/* 1 / sqrt(a), a >= 0. ROUGH_RSQRT: to 2^-11 at least, for what is iterated on.
- * RSQRT: to about one rounding. 1/0 is infinite, 1/infinity 0, of a < 0 NaN; with
- * AVX2 float lanes take a < 2^-126 for 0. Both refine the processor's estimate y
- * where it has one: 1 / sqrt(a) = y (1 - e)^(-1/2), e = 1 - a y^2, by the binomial
- * series. Where a y is not a number, y is exact. */
+/* RSQRT: 1 / sqrt(a), a >= 0, to about one rounding. 1/0 is infinite, 1/infinity 0, of a < 0 NaN;
+ * with AVX2 float lanes take a < 2^-126 for 0. Where the processor has an estimate y, this is it
+ * times (1 - e)^(-1/2), e = 1 - a y^2, by the binomial series; where a y is not a number, y is
+ * exact. ROUGH_SQRT: sqrt(a), a > 0, to 2^-11 at least, for what is iterated on. */
 #if CB_IS(float) && CB_BYTES == 64 && defined __AVX512F__
-INLINE T ROUGH_RSQRT(T a) { return (T)_mm512_rsqrt14_ps((__m512)a); }
+INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm512_rsqrt14_ps((__m512)a); }
+INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
 INLINE T RSQRT(T a) {
-  T y = ROUGH_RSQRT(a), ay = a * y, series = LIT(0.5) * (LIT(1) - ay * y);
+  T y = RSQRT_ESTIMATE(a), ay = a * y, series = LIT(0.5) * (LIT(1) - ay * y);
   __mmask16 refine = _mm512_cmp_ps_mask((__m512)ay, (__m512)ay, _CMP_ORD_Q);
   return (T)_mm512_mask_fmadd_ps((__m512)y, refine, (__m512)series, (__m512)y);
 }
 #elif CB_IS(double) && CB_BYTES == 64 && defined __AVX512F__
-INLINE T ROUGH_RSQRT(T a) { return (T)_mm512_rsqrt14_pd((__m512d)a); }
+INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm512_rsqrt14_pd((__m512d)a); }
+INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
 INLINE T RSQRT(T a) {
-  T y = ROUGH_RSQRT(a), ay = a * y, e = LIT(1) - ay * y;
+  T y = RSQRT_ESTIMATE(a), ay = a * y, e = LIT(1) - ay * y;
   T series = e * (LIT(0.5) + e * (LIT(0.375) + e * (LIT(0.3125) + e * LIT(0.2734375))));
   __mmask8 refine = _mm512_cmp_pd_mask((__m512d)ay, (__m512d)ay, _CMP_ORD_Q);
   return (T)_mm512_mask_fmadd_pd((__m512d)y, refine, (__m512d)series, (__m512d)y);
 }
 #elif CB_IS(float) && CB_BYTES == 32 && defined __AVX2__
-INLINE T ROUGH_RSQRT(T a) { return (T)_mm256_rsqrt_ps((__m256)a); }
+INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm256_rsqrt_ps((__m256)a); }
+INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
 INLINE T RSQRT(T a) {
-  T y = ROUGH_RSQRT(a), ay = a * y, e = LIT(1) - ay * y;
+  T y = RSQRT_ESTIMATE(a), ay = a * y, e = LIT(1) - ay * y;
   return SELECT(ay == ay, y + y * (e * (LIT(0.5) + e * LIT(0.375))), y);
 }
 #else
 INLINE T RSQRT(T a) { return LIT(1) / SQRT(a); }
-INLINE T ROUGH_RSQRT(T a) { return RSQRT(a); }
+INLINE T ROUGH_SQRT(T a) { return SQRT(a); }
 #endif
 
 INLINE T ABS(T a) { return SELECT(a < LIT(0), -a, a); }

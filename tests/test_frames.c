@@ -16,8 +16,8 @@
 
 enum { TRIALS = 2000 };
 
-/* Units of 2^-53, times the condition for distances: measured at most 52 (higham,
- * inverted), of which GSL contributes about 20. */
+/* Units of 2^-53, times the condition for distances: measured at most 32 (at rest),
+ * of which GSL contributes about 20. */
 static const double LIMIT = 100;
 
 typedef void frame_fn(const T *F, T *R);

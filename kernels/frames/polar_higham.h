@@ -17,22 +17,26 @@
  * in   F[9]  row-major, 1
  * fail       rank F < 2: NaN in that lane */
 INLINE T orthogonal_higham(const T *F, T *Q) {
-  T C[9], sign = LIT(0);
+  T C[9], sign = LIT(0), keep = LIT(0);
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   /* With g^2 = |Q^-1| / |Q| and Q^-T = C / det Q an iterate is a multiple of
-   * Q / |Q| +- C / |C|: no division by the volume of a flat element. The factor
-   * makes it orthogonal once all singular values are equal. */
+   * Q / |Q| +- C / |C|: no division by the volume of a flat element. A rough g is
+   * as good; the length of Q matters only to what comes after. */
   for (int n = 0; n < HIGHAM_SCALED; n++) {
     cofactor3(Q, C);
     if (n == 0) sign = SELECT(dot3(Q, C) < LIT(0), LIT(-1), LIT(1));
-    const T half_root_3 = LIT(0.8660254037844386);
-    T keep = half_root_3 * RSQRT(square9(Q)), turn = sign * half_root_3 * RSQRT(square9(C));
-    for (int i = 0; i < 9; i++) Q[i] = keep * Q[i] + turn * C[i];
+    T square = square9(Q), turn = sign * ROUGH_SQRT(square / square9(C));
+    if (n == HIGHAM_SCALED - 1) keep = RSQRT(square);
+    for (int i = 0; i < 9; i++) Q[i] = Q[i] + turn * C[i];
   }
-  for (int n = 0; n < HIGHAM_PLAIN; n++) {
+  /* Orthogonal once all singular values are equal; halved as often as the plain
+   * iterations would halve it. */
+  keep = keep * LIT(0.8660254037844386 / (1 << HIGHAM_PLAIN));
+  for (int i = 0; i < 9; i++) Q[i] = keep * Q[i];
+  for (int n = HIGHAM_PLAIN; n > 0; n--) {
     cofactor3(Q, C);
-    T turn = LIT(0.5) / dot3(Q, C);
-    for (int i = 0; i < 9; i++) Q[i] = LIT(0.5) * Q[i] + turn * C[i];
+    T turn = LIT(1.0 / (1 << 2 * n)) / dot3(Q, C);
+    for (int i = 0; i < 9; i++) Q[i] = Q[i] + turn * C[i];
   }
   return sign;
 }
