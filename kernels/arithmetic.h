@@ -2,7 +2,7 @@
  * Every file of kernels/models, storage and solver is compiled once per
  * arithmetic: CB_SCALAR (double, float, __float128), CB_LANES (elements handled
  * at once), CB_SUFFIX (its name). T is one number per lane, S its scalar.
- * Formulas use T, LIT, SQRT, SELECT, ANY and the operators; nothing else.
+ * Formulas use T, LIT, SQRT, RSQRT, SELECT, ANY and the operators; nothing else.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_ARITHMETIC_H
@@ -11,6 +11,10 @@
 #include <math.h>
 #include <stdint.h>
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "kernels/stages.h"
 
 #define CB_PASTE_(a, b) a##_##b
@@ -18,6 +22,14 @@
 #define CB_NAME(stem) CB_PASTE(stem, CB_SUFFIX) /* the only mangler */
 #define CB_STRING_(a) #a
 #define CB_STRING(a) CB_STRING_(a)
+
+/* CB_IS(float): whether CB_SCALAR is float, for the preprocessor. */
+#define CB_IS_float_float 1
+#define CB_IS_double_double 1
+#define CB_IS_(type, scalar) CB_IS_##type##_##scalar
+#define CB_IS_EXPAND(type, scalar) CB_IS_(type, scalar)
+#define CB_IS(type) CB_IS_EXPAND(type, CB_SCALAR)
+#define CB_BYTES (CB_LANES * (CB_IS(float) ? 4 : CB_IS(double) ? 8 : 16))
 
 #define INLINE static inline __attribute__((always_inline))
 /* One copy in a file, for what nothing is timed with: builds are faster. */
@@ -82,13 +94,52 @@ INLINE MASK load_bytes(const uint8_t *b) {
   __builtin_memcpy(&bytes, b, sizeof bytes);
   return __builtin_convertvector(bytes, MASK);
 }
+#if CB_BYTES == 64 && defined __AVX512F__
+INLINE int ANY(MASK m) { return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0; }
+#elif CB_BYTES == 32 && defined __AVX2__
+INLINE int ANY(MASK m) { return !_mm256_testz_si256((__m256i)m, (__m256i)m); }
+#else
 INLINE int ANY(MASK m) {
   int any = 0;
   for (int l = 0; l < LANES; l++) any |= m[l] != 0;
   return any;
 }
 #endif
+#endif
 #define LIT(x) splat((S)(x))
+
+/* RSQRT: 1 / sqrt(a), a >= 0, to about one rounding. 1/0 is infinite, 1/infinity 0, of a < 0 NaN;
+ * with AVX2 float lanes take a < 2^-126 for 0. Where the processor has an estimate y, this is it
+ * times (1 - e)^(-1/2), e = 1 - a y^2, by the binomial series; where a y is not a number, y is
+ * exact. ROUGH_SQRT: sqrt(a), a > 0, to 2^-11 at least, for what is iterated on. */
+#if CB_IS(float) && CB_BYTES == 64 && defined __AVX512F__
+INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm512_rsqrt14_ps((__m512)a); }
+INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
+INLINE T RSQRT(T a) {
+  T y = RSQRT_ESTIMATE(a), ay = a * y, series = LIT(0.5) * (LIT(1) - ay * y);
+  __mmask16 refine = _mm512_cmp_ps_mask((__m512)ay, (__m512)ay, _CMP_ORD_Q);
+  return (T)_mm512_mask_fmadd_ps((__m512)y, refine, (__m512)series, (__m512)y);
+}
+#elif CB_IS(double) && CB_BYTES == 64 && defined __AVX512F__
+INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm512_rsqrt14_pd((__m512d)a); }
+INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
+INLINE T RSQRT(T a) {
+  T y = RSQRT_ESTIMATE(a), ay = a * y, e = LIT(1) - ay * y;
+  T series = e * (LIT(0.5) + e * (LIT(0.375) + e * (LIT(0.3125) + e * LIT(0.2734375))));
+  __mmask8 refine = _mm512_cmp_pd_mask((__m512d)ay, (__m512d)ay, _CMP_ORD_Q);
+  return (T)_mm512_mask_fmadd_pd((__m512d)y, refine, (__m512d)series, (__m512d)y);
+}
+#elif CB_IS(float) && CB_BYTES == 32 && defined __AVX2__
+INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm256_rsqrt_ps((__m256)a); }
+INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
+INLINE T RSQRT(T a) {
+  T y = RSQRT_ESTIMATE(a), ay = a * y, e = LIT(1) - ay * y;
+  return SELECT(ay == ay, y + y * (e * (LIT(0.5) + e * LIT(0.375))), y);
+}
+#else
+INLINE T RSQRT(T a) { return LIT(1) / SQRT(a); }
+INLINE T ROUGH_SQRT(T a) { return SQRT(a); }
+#endif
 
 INLINE T ABS(T a) { return SELECT(a < LIT(0), -a, a); }
 

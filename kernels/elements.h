@@ -65,10 +65,10 @@ struct cb_elements {
   T *memory;            /* [slots][memory_numbers], zero = cold */
   T *state;             /* [slots][state_numbers] */
   size_t rest_numbers, memory_numbers, state_numbers;
-  size_t bytes;      /* of every array here but X and x */
-  T k;               /* lambda/mu = 2 nu/(1 - 2 nu) */
-  T root, inverse_c; /* sqrt(c mu share / 6), 1/c, for rest data made of X */
-  S *x;              /* ebe-recompute: positions of the last update, a node vector */
+  size_t bytes;                    /* of every array here but X and x */
+  T k;                             /* lambda/mu = 2 nu/(1 - 2 nu) */
+  T root, inverse_root, inverse_c; /* of c mu share / 6; of c: for rest data made of X */
+  S *x;                            /* ebe-recompute: positions of the last update, a node vector */
   /* assembled storages */
   struct cb_pattern *pattern;
   S *edge_sum;                          /* [edges][9] */

@@ -9,6 +9,8 @@
 
 INLINE T dot3(const T *a, const T *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+INLINE T square9(const T *A) { return dot3(A, A) + dot3(A + 3, A + 3) + dot3(A + 6, A + 6); }
+
 /* c := a x b */
 INLINE void cross3(const T *a, const T *b, T *c) {
   c[0] = a[1] * b[2] - a[2] * b[1];

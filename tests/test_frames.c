@@ -7,6 +7,7 @@
 #define CB_SCALAR double
 #define CB_LANES 1
 #define CB_SUFFIX test
+#include "kernels/frames/polar_closed.h"
 #include "kernels/frames/polar_eigen.h"
 #include "kernels/frames/polar_higham.h"
 #include "kernels/frames/polar_quaternion.h"
@@ -15,13 +16,15 @@
 
 enum { TRIALS = 2000 };
 
-/* Units of 2^-53, times the condition for distances: measured at most 52 (higham,
- * inverted), of which GSL contributes about 20. */
+/* Units of 2^-53, times the condition for distances: measured at most 32 (at rest),
+ * of which GSL contributes about 20. */
 static const double LIMIT = 100;
 
 typedef void frame_fn(const T *F, T *R);
 static void orthogonal(const T *F, T *R) { orthogonal_higham(F, R); }
 static void higham(const T *F, T *R) { frame_polar_higham(F, R); }
+static void closed_orthogonal(const T *F, T *R) { orthogonal_closed(F, R); }
+static void closed(const T *F, T *R) { frame_polar_closed(F, R); }
 static void eigen(const T *F, T *R) { frame_polar_eigen(F, R); }
 static void svd(const T *F, T *R) { frame_svd(F, R); }
 static void quaternion_cold(const T *F, T *R) {
@@ -65,8 +68,14 @@ static void higham_is_the_nearest_rotation(void **state) {
   check("higham", higham, false, condition_rotation);
 }
 
-static void without_sign_handling_it_reflects(void **state) {
+static void closed_is_the_nearest_rotation(void **state) {
   (void)state;
+  check("closed", closed, false, condition_rotation);
+}
+
+static void without_sign_handling_they_reflect(void **state) {
+  (void)state;
+  check("closed, orthogonal", closed_orthogonal, true, condition_orthogonal);
   check("orthogonal", orthogonal, true, condition_orthogonal);
 }
 
@@ -151,7 +160,7 @@ static void qr_is_gram_schmidt(void **state) {
 static void flat_shapes_have_a_frame(void **state) {
   (void)state;
   gsl_rng *rng = scene_rng();
-  frame_fn *const frames[] = {higham, svd, eigen, quaternion_cold};
+  frame_fn *const frames[] = {higham, closed, svd, eigen, quaternion_cold};
   for (int t = 0; t < TRIALS; t++) {
     double F[9], R[9], oracle[9];
     random_of_values(rng, 1.5, 0.75, 0, F);
@@ -177,7 +186,8 @@ static bool has_nan(const double *R) {
 
 static void no_frame_is_nan(void **state) {
   (void)state;
-  frame_fn *const frames[] = {orthogonal, higham, svd, eigen, quaternion_cold};
+  frame_fn *const frames[] = {orthogonal, higham, closed_orthogonal, closed,
+                              svd,        eigen,  quaternion_cold};
   const double none[9] = {0}, line[9] = {1, 2, 3, 0, 0, 0, -1, -2, -3};
   double R[9], y[6];
   for (size_t n = 0; n < sizeof frames / sizeof *frames; n++) {
@@ -196,7 +206,8 @@ static void no_frame_is_nan(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(higham_is_the_nearest_rotation),
-      cmocka_unit_test(without_sign_handling_it_reflects),
+      cmocka_unit_test(closed_is_the_nearest_rotation),
+      cmocka_unit_test(without_sign_handling_they_reflect),
       cmocka_unit_test(svd_is_the_nearest_rotation),
       cmocka_unit_test(eigen_is_the_nearest_rotation),
       cmocka_unit_test(a_cold_quaternion_is_the_nearest_rotation),

@@ -23,6 +23,7 @@ static const struct {
                   {"qr-exact", FRAME_QR, BOTH},
                   {"polar-exact", FRAME_POLAR, BOTH},
                   {"polar-higham-precomputed", FRAME_POLAR, ISOTROPIC},
+                  {"polar-closed-precomputed", FRAME_POLAR, ISOTROPIC},
                   {"polar-eigen-precomputed", FRAME_POLAR, ISOTROPIC},
                   {"polar-quaternion-precomputed", FRAME_POLAR, ISOTROPIC},
                   {"svd-precomputed", FRAME_POLAR, ISOTROPIC},

@@ -197,10 +197,10 @@ static void lanes_stay_finite_after_convergence(void **state) {
 /* A flat element has a frame in float too. */
 static void flat_elements_are_finite(void **state) {
   (void)state;
-  static const char *const names[] = {
-      "polar-higham-updated", "polar-eigen-updated", "polar-quaternion-updated",
-      "polar-edges-updated",  "svd-updated",         "qr-updated",
-      "polar-exact"};
+  static const char *const names[] = {"polar-higham-updated", "polar-closed-updated",
+                                      "polar-eigen-updated",  "polar-quaternion-updated",
+                                      "polar-edges-updated",  "svd-updated",
+                                      "qr-updated",           "polar-exact"};
   gsl_rng *rng = scene_rng();
   struct scene s = scene_new(rng, SCENE_ONE);
   struct cb_material m = scene_material(false);

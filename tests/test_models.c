@@ -18,6 +18,7 @@ static const struct {
   enum frame frame;
 } frames[] = {{"qr", FRAME_QR},
               {"polar-higham", FRAME_POLAR},
+              {"polar-closed", FRAME_POLAR},
               {"polar-eigen", FRAME_POLAR},
               {"polar-quaternion", FRAME_POLAR},
               {"svd", FRAME_POLAR},

@@ -1,6 +1,7 @@
-/* jacobi.h - one plane rotation of Jacobi's method, and the eigenvectors of a
- * symmetric 3x3 matrix by a fixed number of cyclic sweeps.
- * Source: Golub & Van Loan, Matrix Computations, section 8.5 (4th ed.).
+/* jacobi.h - one plane rotation of Jacobi's method, the eigenvectors of a
+ * symmetric 3x3 matrix by a fixed number of them, and a frame made of such.
+ * Source: Golub & Van Loan, Matrix Computations, 3rd ed., sections 8.4 and 5.1.13:
+ *         fast rotations, [1 -u; t 1] without their length.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_FRAME_JACOBI_H
@@ -9,26 +10,60 @@
 #include "kernels/frames/iterations.h"
 #include "kernels/tensor3.h"
 
-/* c, s := the rotation that makes [c -s; s c]^T [p r; r q] [c -s; s c] diagonal,
- * by the smaller angle; c = 1, s = 0 when r = 0. */
-INLINE void jacobi_angle(T p, T q, T r, T *c, T *s) {
-  /* tan(2 theta) = 2 r / (p - q) =: y / x, tan theta = y / (x + sign(x) hypot(x, y)) */
-  T x = p - q, y = r + r;
-  T h = SQRT(x * x + y * y);
-  T d = ABS(x) + h;
-  d = SELECT(d > LIT(0), d, LIT(1));
-  T t = SELECT(x < LIT(0), -y, y) / d;
-  *c = LIT(1) / SQRT(LIT(1) + t * t);
-  *s = t * *c;
+/* In float an estimate will do: the angle need not be exact, only t : u. */
+#ifndef JACOBI_SQRT
+#define JACOBI_SQRT(a) (sizeof(S) == sizeof(float) ? ROUGH_SQRT(a) : SQRT(a))
+#endif
+
+/* Columns that fast rotations are applied to stay orthogonal and get longer, by at
+ * most sqrt(2) each: e[j] is the square of what column j has been multiplied by.
+ * t, u := the fast rotation [1 -u; t 1] that makes [1 -u; t 1]^T [p r; r q] [1 -u; t 1]
+ * diagonal, by the smaller angle; t = u = 0 when r = 0.
+ * in/out  e[3]  of which j and k are used */
+INLINE void jacobi_turn(T p, T q, T r, int j, int k, T *e, T *t, T *u) {
+  /* Of the angle: tan 2a = y / x, tan a = y / (x + sign(x) hypot(x, y)), with
+   * y^2 = 4 r^2 e_j e_k, t = tan a (e_j/e_k)^(1/2), u = tan a (e_k/e_j)^(1/2). */
+  const T least = LIT(sizeof(S) == sizeof(float) ? 1e-37 : 1e-300);
+  T x = e[k] * p - e[j] * q;
+  T h = JACOBI_SQRT(x * x + (LIT(4) * (e[j] * e[k]) * (r * r) + least));
+  T w = (r + r) / SELECT(x < LIT(0), x - h, x + h);
+  *t = e[j] * w, *u = e[k] * w;
+  T longer = LIT(1) + *t * *u;
+  e[j] = e[j] * longer, e[k] = e[k] * longer;
 }
 
-/* Columns j, k of A[9] := columns times [c -s; s c]. */
-INLINE void jacobi_columns(T *A, int j, int k, T c, T s) {
-  for (int i = 0; i < 3; i++) {
-    T a = A[3 * i + j], b = A[3 * i + k];
-    A[3 * i + j] = c * a + s * b;
-    A[3 * i + k] = c * b - s * a;
+/* Columns j, k of A[9] := columns times [1 -u; t 1]. */
+INLINE void jacobi_columns(T *A, int j, int k, T t, T u) {
+  for (int i = 0; i < 9; i += 3) {
+    T a = A[i + j], b = A[i + k];
+    A[i + j] = a + t * b;
+    A[i + k] = b - u * a;
   }
+}
+
+INLINE T column_square(const T *A, int j) {
+  return A[j] * A[j] + A[3 + j] * A[3 + j] + A[6 + j] * A[6 + j];
+}
+
+/* V[9] := V with columns of length 1, by[j] what column j has been multiplied by. */
+INLINE void jacobi_normalise(T *V, T *by) {
+  for (int j = 0; j < 3; j++) {
+    by[j] = RSQRT(column_square(V, j));
+    for (int i = j; i < 9; i += 3) V[i] = V[i] * by[j];
+  }
+}
+
+/* B[9] symmetric, V[9]: B := [1 -u; t 1]^T B [1 -u; t 1], its j, k element about 0. */
+INLINE void jacobi_eigen_turn(T *B, T *V, T *e, int j, int k) {
+  int o = 3 - j - k;
+  T t, u, p = B[4 * j], q = B[4 * k], r = B[3 * j + k], jo = B[3 * j + o], ko = B[3 * k + o];
+  jacobi_turn(p, q, r, j, k, e, &t, &u);
+  B[4 * j] = p + t * (r + r + t * q);
+  B[4 * k] = q - u * (r + r - u * p);
+  B[3 * j + k] = B[3 * k + j] = r + t * q - u * (p + t * r);
+  B[3 * j + o] = B[3 * o + j] = jo + t * ko;
+  B[3 * k + o] = B[3 * o + k] = ko - u * jo;
+  jacobi_columns(V, j, k, t, u);
 }
 
 /* A = V diag(lambda) V^T.
@@ -36,25 +71,16 @@ INLINE void jacobi_columns(T *A, int j, int k, T c, T s) {
  * out  V[9]       rotation, eigenvectors in columns (not ordered)
  *      lambda[3]  eigenvalues */
 INLINE void jacobi_eigen(const T *A, T *V, T *lambda) {
-  static const int plane[3][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}};
-  T B[9];
+  T B[9], e[3] = {LIT(1), LIT(1), LIT(1)};
   for (int i = 0; i < 9; i++) B[i] = A[i];
   identity3(V);
-  for (int sweep = 0; sweep < JACOBI_SWEEPS; sweep++)
-    for (int n = 0; n < 3; n++) {
-      int p = plane[n][0], q = plane[n][1], o = plane[n][2];
-      T c, s, apq = B[3 * p + q];
-      jacobi_angle(B[4 * p], B[4 * q], apq, &c, &s);
-      T a = B[4 * p], b = B[4 * q], cross = (apq + apq) * (c * s);
-      B[4 * p] = c * c * a + cross + s * s * b;
-      B[4 * q] = s * s * a - cross + c * c * b;
-      T po = B[3 * p + o], qo = B[3 * q + o];
-      B[3 * p + q] = B[3 * q + p] = LIT(0);
-      B[3 * p + o] = B[3 * o + p] = c * po + s * qo;
-      B[3 * q + o] = B[3 * o + q] = c * qo - s * po;
-      jacobi_columns(V, p, q, c, s);
-    }
-  for (int i = 0; i < 3; i++) lambda[i] = B[4 * i];
+  for (int n = 0; n < JACOBI_TURNS; n += 3) {
+    jacobi_eigen_turn(B, V, e, 0, 1);
+    if (n + 1 < JACOBI_TURNS) jacobi_eigen_turn(B, V, e, 0, 2);
+    if (n + 2 < JACOBI_TURNS) jacobi_eigen_turn(B, V, e, 1, 2);
+  }
+  jacobi_normalise(V, e);
+  for (int i = 0; i < 3; i++) lambda[i] = B[4 * i] * (e[i] * e[i]);
 }
 
 /* Where m: exchange columns j and k, (a, b) -> (b, -a), so that V stays a rotation. */
@@ -71,18 +97,19 @@ INLINE void principal_swap(MASK m, T *n, T *A, T *V, int j, int k) {
 /* R := U V^T, det R = +1, from A = F V = U diag(s): the two longest columns of A
  * give two axes, their cross product the third, and with it the sign of the
  * smallest singular value. Nothing is divided by that value.
- * in/out  n[3] squared lengths of A's columns; A[9]; V[9] rotation: sorted
+ * in/out  n[3] squared lengths of F V's columns, A[9] the same columns but for
+ *         positive factors, V[9] rotation: sorted
  * fail    rank A < 2: NaN in that lane */
 INLINE void frame_from_principal(T *n, T *A, T *V, T *R) {
   T U[9], u[3], v[3], w[3], along = LIT(0);
   principal_swap(n[0] < n[1], n, A, V, 0, 1);
   principal_swap(n[1] < n[2], n, A, V, 1, 2);
   principal_swap(n[0] < n[1], n, A, V, 0, 1);
-  T inverse = LIT(1) / SQRT(n[0]);
+  T inverse = RSQRT(column_square(A, 0));
   for (int i = 0; i < 3; i++) u[i] = A[3 * i] * inverse;
   for (int i = 0; i < 3; i++) along = along + u[i] * A[3 * i + 1];
   for (int i = 0; i < 3; i++) v[i] = A[3 * i + 1] - along * u[i];
-  inverse = LIT(1) / SQRT(dot3(v, v));
+  inverse = RSQRT(dot3(v, v));
   for (int i = 0; i < 3; i++) v[i] = v[i] * inverse;
   cross3(u, v, w);
   for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = w[i];

@@ -10,57 +10,41 @@
 #ifndef CB_FRAME_POLAR_HIGHAM_H
 #define CB_FRAME_POLAR_HIGHAM_H
 
-#include "kernels/frames/jacobi.h"
-
-INLINE T square9(const T *A) { return dot3(A, A) + dot3(A + 3, A + 3) + dot3(A + 6, A + 6); }
+#include "kernels/frames/inversion.h"
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns det Q,
  * +1 or -1.
  * in   F[9]  row-major, 1
  * fail       rank F < 2: NaN in that lane */
 INLINE T orthogonal_higham(const T *F, T *Q) {
-  T C[9], sign = LIT(0);
+  T C[9], sign = LIT(0), keep = LIT(0);
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   /* With g^2 = |Q^-1| / |Q| and Q^-T = C / det Q an iterate is a multiple of
-   * Q / |Q| +- C / |C|: no division by the volume of a flat element. The factor
-   * makes it orthogonal once all singular values are equal. */
+   * Q / |Q| +- C / |C|: no division by the volume of a flat element. A rough g is
+   * as good; the length of Q matters only to what comes after. */
   for (int n = 0; n < HIGHAM_SCALED; n++) {
     cofactor3(Q, C);
     if (n == 0) sign = SELECT(dot3(Q, C) < LIT(0), LIT(-1), LIT(1));
-    const T half_root_3 = LIT(0.8660254037844386);
-    T keep = half_root_3 / SQRT(square9(Q)), turn = sign * half_root_3 / SQRT(square9(C));
-    for (int i = 0; i < 9; i++) Q[i] = keep * Q[i] + turn * C[i];
+    T square = square9(Q), turn = sign * ROUGH_SQRT(square / square9(C));
+    if (n == HIGHAM_SCALED - 1) keep = RSQRT(square);
+    for (int i = 0; i < 9; i++) Q[i] = Q[i] + turn * C[i];
   }
-  for (int n = 0; n < HIGHAM_PLAIN; n++) {
+  /* Orthogonal once all singular values are equal; halved as often as the plain
+   * iterations would halve it. */
+  keep = keep * LIT(0.8660254037844386 / (1 << HIGHAM_PLAIN));
+  for (int i = 0; i < 9; i++) Q[i] = keep * Q[i];
+  for (int n = HIGHAM_PLAIN; n > 0; n--) {
     cofactor3(Q, C);
-    T turn = LIT(0.5) / dot3(Q, C);
-    for (int i = 0; i < 9; i++) Q[i] = LIT(0.5) * Q[i] + turn * C[i];
+    T turn = LIT(1.0 / (1 << 2 * n)) / dot3(Q, C);
+    for (int i = 0; i < 9; i++) Q[i] = Q[i] + turn * C[i];
   }
   return sign;
 }
 
-/* R := nearest rotation to F (det R = +1). Where det F < 0 the direction of the
- * smallest singular value is turned round: R = Q (I - 2 v v^T), S v = s_min v. */
+/* R := nearest rotation to F, an inversion moved to the smallest singular value. */
 INLINE void frame_polar_higham(const T *F, T *R) {
-  T Q[9];
-  MASK inverted = orthogonal_higham(F, Q) < LIT(0);
-  for (int i = 0; i < 9; i++) R[i] = Q[i];
-  if (ANY(inverted)) {
-    T stretch[9], V[9], s[3], v[3], Qv[3];
-    multiply3_tn(Q, F, stretch);
-    jacobi_eigen(stretch, V, s);
-    for (int i = 0; i < 3; i++) v[i] = V[3 * i];
-    T least = s[0];
-    for (int j = 1; j < 3; j++) {
-      MASK less = s[j] < least;
-      least = SELECT(less, s[j], least);
-      for (int i = 0; i < 3; i++) v[i] = SELECT(less, V[3 * i + j], v[i]);
-    }
-    apply3(Q, v, Qv);
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++)
-        R[3 * i + j] = SELECT(inverted, Q[3 * i + j] - LIT(2) * (Qv[i] * v[j]), Q[3 * i + j]);
-  }
+  T Q[9], sign = orthogonal_higham(F, Q);
+  rotation_of_orthogonal(F, Q, sign, R);
 }
 
 #endif

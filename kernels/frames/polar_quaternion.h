@@ -1,7 +1,8 @@
 /* polar_quaternion.h - rotation of F by a quaternion that is carried from step
  * to step and turned a few times towards F.
  * Source: Mueller, Bender, Chentanez, Macklin 2016, eq. 7; the turn by omega is
- *         made with the normalised quaternion (1, omega/2), no sine.
+ *         made with the quaternion (1, omega/2), no sine, and computed with the
+ *         matrix of Horn 1987.
  * Trade:  cheap and never singular, but never converged either: the error left
  *         after the last iteration is a ghost torque.
  *
@@ -22,6 +23,10 @@ INLINE void quaternion_matrix(const T *q, T *R) {
   R[6] = xz - wy, R[7] = yz + wx, R[8] = LIT(1) - (xx + yy);
 }
 
+INLINE T dot4(const T *a, const T *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+}
+
 /* q := unit quaternion of the rotation R, from its largest component
  * (Shepperd 1978): the row of 4 q q^T with the largest diagonal. */
 INLINE void quaternion_from(const T *R, T *q) {
@@ -37,36 +42,42 @@ INLINE void quaternion_from(const T *R, T *q) {
     best = SELECT(more, d[n], best);
     for (int i = 0; i < 4; i++) q[i] = SELECT(more, rows[n][i], q[i]);
   }
-  T inverse = LIT(1) / SQRT(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  T inverse = RSQRT(dot4(q, q));
   for (int i = 0; i < 4; i++) q[i] = q[i] * inverse;
+}
+
+/* q[4] := q turned by omega = a / |tr F R^T|, a the axial vector of F R^T = the sum of
+ * r x f over the columns of R and F. K[16]: Horn's matrix, symmetric, for which
+ * q . K q = |q|^2 tr F R^T; then (0, a) q = K q - q tr F R^T. q need not be unit. */
+INLINE void quaternion_turn(const T *K, T *q) {
+  T p[4];
+  for (int i = 0; i < 4; i++) p[i] = dot4(K + 4 * i, q);
+  T trace = dot4(q, p), square = dot4(q, q);
+  T half = LIT(0.5) / (ABS(trace) + LIT(1e-9) * square);
+  T keep = LIT(1) - half * trace, turn = half * square;
+  for (int i = 0; i < 4; i++) q[i] = keep * q[i] + turn * p[i];
 }
 
 /* R := rotation of F, q[4] := its quaternion for the next call.
  * in/out  q[4]  last result, or all zero: then the first guess is the full
  *               decomposition (a cold guess can be far off after few turns) */
 INLINE void frame_polar_quaternion(const T *F, T *q, T *R) {
-  T norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  MASK cold = norm == LIT(0);
+  MASK cold = dot4(q, q) == LIT(0);
   if (ANY(cold)) {
     T start[4];
     frame_polar_higham(F, R);
     quaternion_from(R, start);
     for (int i = 0; i < 4; i++) q[i] = SELECT(cold, start[i], q[i]);
   }
+  T xw = F[7] - F[5], yw = F[2] - F[6], zw = F[3] - F[1];
+  T xy = F[1] + F[3], xz = F[2] + F[6], yz = F[5] + F[7];
+  T plus = F[0] + F[4], minus = F[0] - F[4];
+  T K[16] = {plus + F[8],   xw, yw, zw, xw, minus - F[8], xy, xz, yw, xy,
+             -minus - F[8], yz, zw, xz, yz, F[8] - plus};
+  for (int n = 0; n < QUATERNION_TURNS; n++) quaternion_turn(K, q);
+  T inverse = RSQRT(dot4(q, q));
+  for (int i = 0; i < 4; i++) q[i] = q[i] * inverse;
   quaternion_matrix(q, R);
-  for (int n = 0; n < QUATERNION_TURNS; n++) {
-    T G[9], p[4]; /* G = F R^T; sum of r x a over columns = its axial vector */
-    multiply3_nt(F, R, G);
-    T half = LIT(0.5) / (ABS(G[0] + G[4] + G[8]) + LIT(1e-9));
-    T x = half * (G[7] - G[5]), y = half * (G[2] - G[6]), z = half * (G[3] - G[1]);
-    p[0] = q[0] - x * q[1] - y * q[2] - z * q[3];
-    p[1] = q[1] + x * q[0] + y * q[3] - z * q[2];
-    p[2] = q[2] + y * q[0] + z * q[1] - x * q[3];
-    p[3] = q[3] + z * q[0] + x * q[2] - y * q[1];
-    T inverse = LIT(1) / SQRT(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
-    for (int i = 0; i < 4; i++) q[i] = p[i] * inverse;
-    quaternion_matrix(q, R);
-  }
 }
 
 #endif

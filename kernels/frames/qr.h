@@ -16,13 +16,13 @@
  * fail       b-a = 0, or c-a along it: NaN in that lane only */
 INLINE void frame_qr(const T *e, T *R, T *y) {
   T q[9], r[3];
-  y[0] = SQRT(dot3(e, e));
-  T inverse = LIT(1) / y[0];
+  T square = dot3(e, e), inverse = RSQRT(square);
+  y[0] = square * inverse;
   for (int i = 0; i < 3; i++) q[i] = inverse * e[i];
   y[1] = dot3(q, e + 3);
   for (int i = 0; i < 3; i++) r[i] = e[3 + i] - y[1] * q[i];
-  y[2] = SQRT(dot3(r, r));
-  inverse = LIT(1) / y[2];
+  square = dot3(r, r), inverse = RSQRT(square);
+  y[2] = square * inverse;
   for (int i = 0; i < 3; i++) q[3 + i] = inverse * r[i];
   cross3(q, q + 3, q + 6);
   for (int i = 0; i < 3; i++) {

@@ -10,28 +10,28 @@
 
 #include "kernels/frames/jacobi.h"
 
+/* Columns j, k of A = F V, and with them V, turned until orthogonal. */
+INLINE void svd_turn(T *A, T *V, T *e, int j, int k) {
+  T t, u, r = A[j] * A[k] + A[3 + j] * A[3 + k] + A[6 + j] * A[6 + k];
+  jacobi_turn(column_square(A, j), column_square(A, k), r, j, k, e, &t, &u);
+  jacobi_columns(A, j, k, t, u);
+  jacobi_columns(V, j, k, t, u);
+}
+
 /* R := U V^T, det R = +1.
  * in   F[9]  row-major, 1
  * fail       rank F < 2: NaN in that lane */
 INLINE void frame_svd(const T *F, T *R) {
-  static const int plane[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  T A[9], V[9], n[3];
+  T A[9], V[9], n[3], e[3] = {LIT(1), LIT(1), LIT(1)};
   for (int i = 0; i < 9; i++) A[i] = F[i];
   identity3(V);
-  for (int sweep = 0; sweep < JACOBI_SWEEPS; sweep++)
-    for (int m = 0; m < 3; m++) {
-      int j = plane[m][0], k = plane[m][1];
-      T c, s, p = LIT(0), q = LIT(0), r = LIT(0);
-      for (int i = 0; i < 9; i += 3) {
-        p = p + A[i + j] * A[i + j];
-        q = q + A[i + k] * A[i + k];
-        r = r + A[i + j] * A[i + k];
-      }
-      jacobi_angle(p, q, r, &c, &s);
-      jacobi_columns(A, j, k, c, s);
-      jacobi_columns(V, j, k, c, s);
-    }
-  for (int j = 0; j < 3; j++) n[j] = A[j] * A[j] + A[3 + j] * A[3 + j] + A[6 + j] * A[6 + j];
+  for (int m = 0; m < JACOBI_TURNS; m += 3) {
+    svd_turn(A, V, e, 0, 1);
+    if (m + 1 < JACOBI_TURNS) svd_turn(A, V, e, 0, 2);
+    if (m + 2 < JACOBI_TURNS) svd_turn(A, V, e, 1, 2);
+  }
+  jacobi_normalise(V, e);
+  for (int j = 0; j < 3; j++) n[j] = column_square(A, j) * (e[j] * e[j]);
   frame_from_principal(n, A, V, R);
 }
 

@@ -13,6 +13,7 @@
   FAMILY(X, qr)                                                                                    \
   X(qr_exact)                                                                                      \
   FAMILY(X, polar_higham)                                                                          \
+  FAMILY(X, polar_closed)                                                                          \
   FAMILY(X, polar_eigen)                                                                           \
   FAMILY(X, polar_quaternion)                                                                      \
   FAMILY(X, polar_edges)                                                                           \

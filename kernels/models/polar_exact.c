@@ -3,7 +3,7 @@
  * method drops how R turns with x, and makes a ghost torque.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "kernels/frames/polar_higham.h"
+#include "kernels/frames/polar_closed.h"
 #include "kernels/models/strain.h"
 
 /* P := P - [w]x, (tr(S) I - S) w = axial(P S - S P), S = R^T F: then R P is the
@@ -28,7 +28,7 @@ INLINE void polar_exact_pack(const struct cb_elements *E, int policy, int exact,
   T F[9], stretch[9];
   (void)exact, (void)memory, (void)y;
   deformation_gradient(policy, rest, e, F);
-  frame_polar_higham(F, R);
+  frame_polar_closed(F, R);
   STAGE(STAGE_FORCE);
   corotated_stress(E->k, rest, ortho, R, F, stretch, P);
   if (!ortho) return;
@@ -44,5 +44,5 @@ INLINE void polar_exact_pack(const struct cb_elements *E, int policy, int exact,
 #define LAWS (LAWS_ELEMENT | LAWS_EULER | LAWS_ENERGY | LAWS_ORDER)
 
 COROTATED_MODEL(polar_exact, "polar-exact", "polar frame, rest B, true gradient of the energy",
-                "this project; frame of Higham 1986", POLICY_PRECOMPUTED, AXES_WORLD, 0, 0, LAWS,
-                LAWS)
+                "this project; frame of Hoger & Carlson 1984", POLICY_PRECOMPUTED, AXES_WORLD, 0, 0,
+                LAWS, LAWS)

@@ -35,13 +35,11 @@ INLINE struct share scalars_of(size_t nodes, struct share s) {
 }
 
 /* Products of T summed in ACC: in several sums, which do not wait for each other. */
-#define SCALAR_IS_float 1
-#define SCALAR_IS_FLOAT CB_PASTE(SCALAR_IS, CB_SCALAR)
 #if CB_LANES == 1
 enum { SUM_PARTS = 3 };
 typedef ACC PART;
 #define PART_OF(t, n) ((ACC)(t))
-#elif SCALAR_IS_FLOAT
+#elif CB_IS(float)
 enum { SUM_PARTS = 2 };
 typedef ACC PART __attribute__((vector_size(sizeof(ACC) * CB_LANES / 2)));
 #if CB_LANES == 8
@@ -69,7 +67,7 @@ INLINE void sum_product(struct sum *s, size_t n, T a, T b) {
 #else
   (void)n;
   s->part[0] += PART_OF(a, 0) * PART_OF(b, 0);
-#if SCALAR_IS_FLOAT
+#if CB_IS(float)
   s->part[1] += PART_OF(a, 1) * PART_OF(b, 1);
 #endif
 #endif

@@ -276,6 +276,7 @@ static void constants(const struct layout *L, const struct cb_mesh *mesh, struct
   const REAL nu = (REAL)L->material->poisson;
   E->k = splat(L->orthotropic ? (S)0 : (S)(2 * nu / (1 - 2 * nu)));
   E->root = splat((S)real_sqrt(L->c * L->mu * (REAL)mesh->share / 6));
+  E->inverse_root = splat((S)(1 / real_sqrt(L->c * L->mu * (REAL)mesh->share / 6)));
   E->inverse_c = splat((S)(1 / L->c));
 }
 

@@ -16,7 +16,7 @@ INLINE void rest_of_edges(const struct cb_elements *E, const T *e, T *r) {
   if (E->axes == AXES_EDGES) {
     T Q[9], y[6];
     frame_qr(e, Q, y);
-    T xb = y[0], xc = y[1], yc = y[2], xd = y[3], yd = y[4], zd = y[5];
+    const T xb = y[0], xc = y[1], yc = y[2], xd = y[3], yd = y[4], zd = y[5];
     det = xb * yc * zd;
     g[0] = yc * zd, g[1] = -(xc * zd), g[2] = xc * yd - yc * xd;
     g[3] = LIT(0), g[4] = xb * zd, g[5] = -(xb * yd);
@@ -26,18 +26,17 @@ INLINE void rest_of_edges(const struct cb_elements *E, const T *e, T *r) {
     det = dot3(e, g);
   }
   T sign = SELECT(det < LIT(0), LIT(-1), LIT(1)), volume = sign * det;
-  T s = E->root * SQRT(volume); /* sqrt(c mu W) */
-  T inverse = LIT(1) / (s * volume), over_volume = inverse * s;
-  T scale = sign * over_volume;
+  T q = RSQRT(volume), rq = E->root * q; /* sqrt(c mu W) / volume */
+  T s = rq * volume, scale = sign * q * q;
   r[REST_EDGE] = LIT(1);
   r[REST_W] = s;
   r[REST_FORCE] = E->inverse_c * s;
   if (E->policy == POLICY_PRECOMPUTED) {
-    scale = scale * s;
-    r[REST_EDGE] = volume * inverse;
+    scale = sign * rq;
+    r[REST_EDGE] = E->inverse_root * q;
   }
   if (E->policy == POLICY_UPDATED) {
-    r[REST_W] = s * over_volume;
+    r[REST_W] = rq;
     r[REST_FORCE] = sign * r[REST_FORCE];
   }
   for (int i = 0; i < 9; i++) g[i] = scale * g[i];
