@@ -18,7 +18,7 @@ enum { PART = NODES + TETS + 1, CODE = NODES * (NODES + 3) / 2 + TETS };
 /* The code of a numbering, node by node: in how many tetrahedra the node is, and is
  * together with each one before; the tetrahedra that it completes, low ones first;
  * a zero. The canonical numberings have the greatest code. Without the counts it
- * would still be one, found in a hundred times the time. */
+ * would still be one, but a search took ten times as long. */
 struct canon {
   const uint8_t *mask;
   size_t nodes, tets;
