@@ -72,7 +72,10 @@ INLINE T splat(S a) { return a; }
 INLINE T SQRT(T a) { return scalar_sqrt(a); }
 INLINE T SELECT(MASK m, T a, T b) { return m ? a : b; }
 INLINE int ANY(MASK m) { return m; }
-INLINE MASK load_bytes(const uint8_t *b) { return *b; }
+typedef int WHOLES, CHOICE;
+INLINE WHOLES load_bytes(const uint8_t *b) { return *b; }
+#define EQUAL(w, n) ((w) == (n))
+#define CHOOSE SELECT
 #else
 typedef S T __attribute__((vector_size(sizeof(S) * CB_LANES)));
 typedef __typeof__((T){0} < (T){0}) MASK;
@@ -88,12 +91,33 @@ INLINE T SQRT(T a) {
   return t;
 }
 INLINE T SELECT(MASK m, T a, T b) { return (T)((m & (MASK)a) | (~m & (MASK)b)); }
-/* One number a lane, from LANES bytes. */
-INLINE MASK load_bytes(const uint8_t *b) {
-  uint8_t bytes __attribute__((vector_size(CB_LANES)));
-  __builtin_memcpy(&bytes, b, sizeof bytes);
-  return __builtin_convertvector(bytes, MASK);
+/* WHOLES: a whole number a lane, from LANES bytes; CHOICE: what EQUAL makes of one and
+ * CHOOSE takes for a mask, in the registers that the processor has for that. */
+typedef MASK WHOLES;
+#if CB_BYTES == 64 && defined __AVX512F__ && CB_IS(float)
+typedef __mmask16 CHOICE;
+INLINE WHOLES load_bytes(const uint8_t *b) {
+  return (WHOLES)_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)b));
 }
+#define EQUAL(w, n) _mm512_cmpeq_epi32_mask((__m512i)(w), _mm512_set1_epi32(n))
+#define CHOOSE(m, a, b) ((T)_mm512_mask_blend_ps(m, (__m512)(b), (__m512)(a)))
+#elif CB_BYTES == 64 && defined __AVX512F__
+typedef __mmask8 CHOICE;
+INLINE WHOLES load_bytes(const uint8_t *b) {
+  return (WHOLES)_mm512_cvtepu8_epi64(_mm_loadl_epi64((const __m128i *)b));
+}
+#define EQUAL(w, n) _mm512_cmpeq_epi64_mask((__m512i)(w), _mm512_set1_epi64(n))
+#define CHOOSE(m, a, b) ((T)_mm512_mask_blend_pd(m, (__m512d)(b), (__m512d)(a)))
+#else
+typedef MASK CHOICE;
+INLINE WHOLES load_bytes(const uint8_t *b) {
+  WHOLES w;
+  for (int l = 0; l < LANES; l++) w[l] = b[l];
+  return w;
+}
+#define EQUAL(w, n) ((w) == (n))
+#define CHOOSE SELECT
+#endif
 #if CB_BYTES == 64 && defined __AVX512F__
 INLINE int ANY(MASK m) { return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0; }
 #elif CB_BYTES == 32 && defined __AVX2__

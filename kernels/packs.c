@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "kernels/memory.h"
 #include "kernels/team.h"
 
 /* Units of one mesh, in the order of their lowest tetrahedra within a shape. */
@@ -243,7 +244,7 @@ static enum cb_status allocate(const struct units *U, const struct drafts *d, st
     P->slots += shape_of(U, d->draft[p].shape)->tets;
   }
   if (P->nodes * P->lanes > UINT32_MAX) return CB_INPUT;
-  P->node = aligned_alloc(64, (P->nodes * P->lanes * sizeof *P->node + 63) / 64 * 64);
+  P->node = cb_memory(P->nodes * P->lanes, sizeof *P->node);
   P->bytes = P->nodes * P->lanes * sizeof *P->node + P->threads * sizeof *P->chunk;
   if (!P->node) return CB_MEMORY;
   if (!U->clusters) return CB_OK;

@@ -33,8 +33,8 @@ enum { CB_LANES_MOST = 16 };
 struct cb_packs {
   size_t lanes, threads, packs;
   size_t slots;           /* of tetrahedra, `lanes` in each; single: a pack is a slot */
-  size_t nodes;            /* of node indices, `lanes` of each */
-  uint32_t *node;          /* [nodes][lanes]; single: [packs][4][lanes] */
+  size_t nodes;           /* of node indices, `lanes` of each */
+  uint32_t *node;         /* [nodes][lanes]; single: [packs][4][lanes] */
   struct cb_chunk *chunk; /* [threads] */
   /* clusters only, else NULL */
   struct cb_pack *pack; /* [packs] */

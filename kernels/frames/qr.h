@@ -12,9 +12,9 @@
 /* R := Q, right-handed, with e_b, e_c in its first axis and first plane.
  * in   e[9]  edges b-a, c-a, d-a, one a row, m
  * out  R[9]  rotation, row-major; columns are the local axes
- *      y[6]  the edges in local axes: x_b, x_c, y_c, x_d, y_d, z_d, m
+ *      y[3]  e_b and e_c in local axes: x_b, x_c, y_c, m
  * fail       b-a = 0, or c-a along it: NaN in that lane only */
-INLINE void frame_qr(const T *e, T *R, T *y) {
+INLINE void frame_qr_axes(const T *e, T *R, T *y) {
   T q[9], r[3];
   T square = dot3(e, e), inverse = RSQRT(square);
   y[0] = square * inverse;
@@ -25,10 +25,13 @@ INLINE void frame_qr(const T *e, T *R, T *y) {
   y[2] = square * inverse;
   for (int i = 0; i < 3; i++) q[3 + i] = inverse * r[i];
   cross3(q, q + 3, q + 6);
-  for (int i = 0; i < 3; i++) {
-    y[3 + i] = dot3(q + 3 * i, e + 6);
-    for (int j = 0; j < 3; j++) R[3 * j + i] = q[3 * i + j];
-  }
+  for (int i = 0; i < 9; i++) R[i] = q[i % 3 * 3 + i / 3];
+}
+
+/* The same, and y[6] := all edges in local axes: x_d, y_d, z_d as well. */
+INLINE void frame_qr(const T *e, T *R, T *y) {
+  frame_qr_axes(e, R, y);
+  apply3_transposed(R, e + 6, y + 3);
 }
 
 #endif

@@ -3,8 +3,9 @@
  *   SPARSE          1 if the frame makes local gradients triangular (qr), else 0
  *   NO_FRAME        1 if R = I always (linear), else 0
  *   REFLECTS        defined if R may be a reflection (polar-reflected)
- *   FRAME_ROTATION(e, F, memory, R)  the frame from edges and F; or FRAME_PACK,
- *                   with the contract of frame_pack below
+ *   FRAME_ROTATION(e, F, memory, R)  the frame from edges and F; FRAME_PACK and
+ *                   FRAME_WORLD, with the contracts of frame_pack and frame_world
+ *                   below, where something else is to be done than they do
  * and then lists its models with COROTATED_FAMILY or COROTATED_MODEL.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -18,29 +19,46 @@ OUTLINE void frame_called(const T *e, const T *F, T *memory, T *R) {
   (void)e, (void)F, (void)memory;
   FRAME_ROTATION(e, F, memory, R);
 }
+#endif
 
+#ifndef FRAME_WORLD
+/* Frame and deformation gradient of one pack.
+ * in      policy, ortho  constants; rest; e, own (update_pack_fn)
+ * in/out  memory
+ * out     R[9]  frame; F[9]  such that F R^T - I, made symmetric, is the corotated
+ *         strain in world axes */
+#define FRAME_WORLD frame_world
+INLINE void frame_world(const struct cb_elements *E, int policy, int ortho, const T *rest,
+                        const T *e, const T *own, T *memory, T *R, T *F) {
+  (void)E;
+  (void)own, (void)memory;
+  deformation_gradient(policy, rest, e, F);
+  if (ortho)
+    frame_called(own, F, memory, R);
+  else
+    FRAME_ROTATION(own, F, memory, R);
+  STAGE(STAGE_FORCE);
+}
+#endif
+
+#ifndef FRAME_PACK
 /* Frame and local first Piola-Kirchhoff stress of one pack.
- * in      policy, exact, ortho  constants; rest; e[9] edges, m
+ * in      policy, exact, ortho  constants; rest; e, own (update_pack_fn)
  * in/out  memory
  * out     R[9]  frame; P[9] R^T (Piola stress) / mu; exact: not symmetric
  *         y[6]  edges in local axes, m (SPARSE frames only) */
 #define FRAME_PACK frame_pack
 INLINE void frame_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
-                       const T *e, T *memory, T *R, T *P, T *y) {
+                       const T *e, const T *own, T *memory, T *R, T *P, T *y) {
   T F[9], stretch[9];
-  (void)exact, (void)memory, (void)y;
-  deformation_gradient(policy, rest, e, F);
-  if (ortho)
-    frame_called(e, F, memory, R);
-  else
-    FRAME_ROTATION(e, F, memory, R);
-  STAGE(STAGE_FORCE);
-  corotated_stress(E->k, rest, ortho, NO_FRAME ? NULL : R, F, stretch, P);
+  (void)exact, (void)y;
+  frame_world(E, policy, ortho, rest, e, own, memory, R, F);
+  corotated_stress(E->k, rest, ortho, R, F, stretch, P);
 }
 #endif
 
 /* w := world gradients (kernels/elements.h). */
-INLINE void world_gradients(int policy, int sparse, int frameless, const T *rest, const T *e,
+INLINE void world_gradients(int policy, bool sparse, int frameless, const T *rest, const T *e,
                             const T *R, T *w) {
   const T *g = rest + REST_G;
   if (policy == POLICY_PRECOMPUTED) {
@@ -68,16 +86,11 @@ INLINE void world_gradients(int policy, int sparse, int frameless, const T *rest
   for (int i = 0; i < 9; i++) w[i] = scale * w[i];
 }
 
-/* M := R P R^T. exact: P is not symmetric. */
-INLINE void world_stress(int exact, int frameless, const T *R, const T *P, T *M) {
+/* M := R P R^T, P not symmetric. */
+INLINE void world_stress(const T *R, const T *P, T *M) {
   T RP[9];
-  if (frameless)
-    for (int i = 0; i < 9; i++) M[i] = P[i];
-  else if (exact) {
-    multiply3(R, P, RP);
-    multiply3_nt(RP, R, M);
-  } else
-    rotate3_symmetric(R, P, M);
+  multiply3(R, P, RP);
+  multiply3_nt(RP, R, M);
 }
 
 /* M := -h s M - stress of the velocity gradient: force and product in one go. */
@@ -90,6 +103,23 @@ INLINE void absorb(int ortho, T k, const T *rest, T h, const T *w, const T *ev, 
     stress(ortho, k, rest + REST_D, H, N);
     for (int i = 0; i < 9; i++) M[i] = M[i] - N[i];
   }
+}
+
+/* f := h f - c K v, where the stress is a function of F R^T alone: strain and
+ * velocity gradient are added before there is a stress of either. */
+INLINE void world_forces(const struct cb_elements *E, int ortho, const T *rest, const T *R,
+                         const T *F, T h, const T *w, const T *ev, T *f) {
+  T Z[9], M[9], scale = -(h * rest[REST_FORCE]);
+  if (R)
+    multiply3_nt(F, R, Z);
+  else
+    for (int i = 0; i < 9; i++) Z[i] = F[i];
+  for (int i = 0; i < 9; i++) Z[i] = scale * (i % 4 == 0 ? Z[i] - LIT(1) : Z[i]);
+  if (ev)
+    for (int i = 0; i < 9; i++)
+      for (int j = 0; j < 9; j += 3) Z[i] = Z[i] - ev[j + i / 3] * w[j + i % 3];
+  stress(ortho, E->k, rest + REST_D, Z, M);
+  forces3(M, w, f);
 }
 
 INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T *b) {
@@ -105,15 +135,24 @@ INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T
 /* Frame, gradients and force of one pack. Isotropic or frameless: w are world
  * gradients and R is not needed afterwards; orthotropic: w are local gradients. */
 INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
-                           const T *rest, const T *e, const T *ev, T h, T *memory, T *R, T *w,
-                           T *f) {
+                           const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
+                           T *R, T *w, T *f) {
   T P[9], M[9], y[6], q[9], p[9];
-  FRAME_PACK(E, policy, exact, ortho, rest, e, memory, R, P, y);
-  STAGE(STAGE_B);
-  if (!ortho || NO_FRAME) {
-    world_gradients(policy, SPARSE, NO_FRAME, rest, e, R, w);
+  if (NO_FRAME || (!ortho && !exact)) {
+    T F[9];
+    FRAME_WORLD(E, policy, ortho, rest, e, own, memory, R, F);
+    STAGE(STAGE_B);
+    world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
     STAGE(STAGE_FORCE);
-    world_stress(exact, NO_FRAME, R, P, M);
+    world_forces(E, ortho, rest, NO_FRAME ? NULL : R, F, h, w, ev, f);
+    return;
+  }
+  FRAME_PACK(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
+  STAGE(STAGE_B);
+  if (!ortho) {
+    world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
+    STAGE(STAGE_FORCE);
+    world_stress(R, P, M);
     absorb(ortho, E->k, rest, h, w, ev, M);
     forces3(M, w, f);
     return;
@@ -127,8 +166,8 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
   for (int j = 0; j < 9; j += 3) apply3(R, p + j, f + j);
 }
 
-typedef void corotated_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *ev,
-                               T h, T *memory, T *R, T *w, T *f);
+typedef void corotated_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
+                               const T *ev, T h, T *memory, T *R, T *w, T *f);
 
 /* f := c K u where R = I. */
 INLINE void frameless_product(T k, int ortho, const T *rest, const T *u, T *f) {
@@ -141,10 +180,10 @@ INLINE void frameless_product(T k, int ortho, const T *rest, const T *u, T *f) {
 /* ---- ebe: state w, or (orthotropic) R and, if it changes, b ----------------- */
 
 INLINE void corotated_ebe(const struct cb_elements *E, corotated_pack_fn *pack, int policy,
-                          int ortho, const T *rest, const T *e, const T *ev, T h, T *memory,
-                          T *state, T *f) {
+                          int ortho, const T *rest, const T *e, const T *own, const T *ev, T h,
+                          T *memory, T *state, T *f) {
   T R[9], w[9];
-  pack(E, rest, e, ev, h, memory, R, w, f);
+  pack(E, rest, e, own, ev, h, memory, R, w, f);
   if (NO_FRAME) return; /* the rest gradients are the world gradients */
   if (ortho) {
     for (int i = 0; i < 9; i++) state[i] = R[i];
@@ -167,9 +206,10 @@ INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, int o
 /* ---- ebe-matrix, csr, bcsr: edge products (isotropic) or blocks ------------ */
 
 INLINE void corotated_blocks(const struct cb_elements *E, corotated_pack_fn *pack, int ortho,
-                             const T *rest, const T *e, const T *ev, T h, T *memory, T *X, T *f) {
+                             const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
+                             T *X, T *f) {
   T R[9], w[9];
-  pack(E, rest, e, ev, h, memory, R, w, f);
+  pack(E, rest, e, own, ev, h, memory, R, w, f);
   STAGE(STAGE_ASSEMBLY);
   if (ortho)
     edge_blocks_local(rest + REST_D, R, w, X);
@@ -186,10 +226,10 @@ INLINE const T *paper_b(int policy, int ortho, const T *rest, const T *state) {
 }
 
 INLINE void corotated_paper(const struct cb_elements *E, int policy, int exact, int ortho,
-                            const T *rest, const T *e, const T *ev, T h, T *memory, T *state,
-                            T *f) {
+                            const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
+                            T *state, T *f) {
   T *R = state, P[9], y[6], out[12];
-  FRAME_PACK(E, policy, exact, ortho, rest, e, memory, R, P, y);
+  FRAME_PACK(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
   STAGE(STAGE_B);
   if (policy != POLICY_PRECOMPUTED) {
     if (SPARSE)
@@ -224,19 +264,19 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 /* Functions of model ID with the element functions bound to constants. */
 #define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
   PACK_LINKAGE void ID##_pack_##TAG(const struct cb_elements *E, const T *r, const T *e,           \
-                                    const T *ev, T h, T *m, T *R, T *w, T *f) {                    \
-    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, R, w, f);                              \
+                                    const T *own, const T *ev, T h, T *m, T *R, T *w, T *f) {      \
+    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, R, w, f);                         \
   }                                                                                                \
-  INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,     \
-                             T h, T *m, T *s, T *f) {                                              \
-    corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, ev, h, m, s, f);                        \
+  INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,    \
+                             const T *ev, T h, T *m, T *s, T *f) {                                 \
+    corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, own, ev, h, m, s, f);                   \
   }                                                                                                \
-  INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,  \
-                                T h, T *m, T *X, T *f) {                                           \
-    corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, ev, h, m, X, f);                             \
+  INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own, \
+                                const T *ev, T h, T *m, T *X, T *f) {                              \
+    corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, own, ev, h, m, X, f);                        \
   }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
-  STORAGE_CLUSTER(ID, TAG, (ORTHO) || NO_FRAME ? KEEP_STATE : KEEP_GRADIENTS)                      \
+  STORAGE_CLUSTER(ID, TAG)                                                                         \
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))
 
 #define COROTATED_PRODUCT(ID, POLICY, ORTHO, TAG)                                                  \
@@ -248,9 +288,9 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
   STORAGE_CLUSTER_PRODUCT(ID, TAG)
 
 #define COROTATED_PAPER(ID, POLICY, EXACT, ORTHO, TAG)                                             \
-  INLINE void ID##_paper_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,   \
-                               T h, T *m, T *s, T *f) {                                            \
-    corotated_paper(E, POLICY, EXACT, ORTHO, r, e, ev, h, m, s, f);                                \
+  INLINE void ID##_paper_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
+                               const T *ev, T h, T *m, T *s, T *f) {                               \
+    corotated_paper(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, s, f);                           \
   }                                                                                                \
   INLINE void ID##_paper_product_##TAG(const struct cb_elements *E, const T *r, const T *s,        \
                                        const T *u, T *f) {                                         \
@@ -281,14 +321,13 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 
 /* Gradients are functions of the positions alone where B is updated. */
 #define COROTATED_RECOMPUTE_FORM(ID, POLICY)                                                       \
-  (POLICY) == POLICY_PRECOMPUTED ? NULL : ID##_recompute_update_iso,                               \
+  (POLICY) == POLICY_PRECOMPUTED ? NULL : ID##_cluster_update_iso,                                 \
       (POLICY) == POLICY_PRECOMPUTED ? NULL : CB_NAME(cb_product_recompute), 1
 
 #define COROTATED(ID, POLICY, EXACT)                                                               \
   COROTATED_FORM(ID, POLICY, EXACT, 0, iso)                                                        \
   COROTATED_FORM(ID, POLICY, EXACT, 1, ortho)                                                      \
   COROTATED_PRODUCT(ID, POLICY, 1, ortho)                                                          \
-  STORAGE_RECOMPUTE(ID, iso)                                                                       \
   COROTATED_PAPERS(ID, POLICY, EXACT)
 
 #define COROTATED_FORMS(ID, POLICY)                                                                \

@@ -22,26 +22,25 @@
 
 #define STORAGE_EBE(ID, TAG)                                                                       \
   UPDATE_FUNCTION(ID##_ebe_update_##TAG, drive_update(E, thread, x, v, h, out, ID##_ebe_##TAG))
-/* ... and in clusters; KEEP: see kernels/storage/cluster.h. */
-#define STORAGE_CLUSTER(ID, TAG, KEEP)                                                             \
+/* ... in clusters, whether the state or the positions are kept. */
+#define STORAGE_CLUSTER(ID, TAG)                                                                   \
   UPDATE_FUNCTION(ID##_cluster_update_##TAG,                                                       \
-                  drive_update_clusters(E, thread, x, v, h, out, ID##_ebe_##TAG, KEEP))
+                  drive_update_clusters(E, thread, x, v, h, out, ID##_ebe_##TAG))
 #define STORAGE_CLUSTER_PRODUCT(ID, TAG)                                                           \
   PRODUCT_FUNCTION(ID##_cluster_run_##TAG,                                                         \
                    drive_product_clusters(E, thread, u, y, ID##_ebe_product_##TAG))
-#define STORAGE_RECOMPUTE(ID, TAG)                                                                 \
-  UPDATE_FUNCTION(ID##_recompute_update_##TAG,                                                     \
-                  drive_update_clusters(E, thread, x, v, h, out, ID##_ebe_##TAG, KEEP_SCALE))
 /* ... and its product, unless it is cb_product_gradients. */
 #define STORAGE_EBE_PRODUCT(ID, TAG)                                                               \
   PRODUCT_FUNCTION(ID##_ebe_run_##TAG, drive_product(E, thread, u, y, ID##_ebe_product_##TAG))
 #define STORAGE_PAPER(ID, TAG)                                                                     \
-  UPDATE_FUNCTION(ID##_paper_update_##TAG, drive_update(E, thread, x, v, h, out, ID##_paper_##TAG))        \
-  PRODUCT_FUNCTION(ID##_paper_run_##TAG, drive_product_nodes(E, thread, u, y, ID##_paper_product_##TAG))
+  UPDATE_FUNCTION(ID##_paper_update_##TAG,                                                         \
+                  drive_update(E, thread, x, v, h, out, ID##_paper_##TAG))                         \
+  PRODUCT_FUNCTION(ID##_paper_run_##TAG,                                                           \
+                   drive_product_nodes(E, thread, u, y, ID##_paper_product_##TAG))
 /* PRODUCTS: blocks come as edge products. */
 #define STORAGE_BLOCKS(ID, TAG, PRODUCTS)                                                          \
   UPDATE_FUNCTION(ID##_matrix_update_##TAG,                                                        \
-                  drive_update_matrix(E, thread, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))               \
+                  drive_update_matrix(E, thread, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))       \
   UPDATE_FUNCTION(ID##_assembled_update_##TAG,                                                     \
                   drive_update_assembled(E, thread, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))
 
@@ -53,8 +52,6 @@
   { ID##_cluster_update_##TAG, ID##_cluster_run_##TAG, NUMBERS }
 #define FORM_CLUSTER_SHARED(ID, TAG)                                                               \
   { ID##_cluster_update_##TAG, CB_NAME(cb_product_cluster_gradients), 9 }
-#define FORM_RECOMPUTE(ID, TAG)                                                                    \
-  { ID##_recompute_update_##TAG, CB_NAME(cb_product_recompute), 1 }
 #define FORM_PAPER(ID, TAG, NUMBERS)                                                               \
   { ID##_paper_update_##TAG, ID##_paper_run_##TAG, NUMBERS }
 #define FORM_MATRIX(ID, TAG)                                                                       \

@@ -90,23 +90,23 @@ INLINE void green_blocks(const struct cb_elements *E, int ortho, const T *rest, 
 }
 
 #define GREEN(ORTHO, TAG)                                                                          \
-  INLINE void green_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev,    \
-                              T h, T *m, T *s, T *f) {                                             \
-    (void)m;                                                                                       \
+  INLINE void green_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,   \
+                              const T *ev, T h, T *m, T *s, T *f) {                                \
+    (void)m, (void)own;                                                                            \
     green_ebe(E, ORTHO, r, e, ev, h, s, f);                                                        \
   }                                                                                                \
   INLINE void green_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,         \
                                       const T *u, T *f) {                                          \
     green_product(E, ORTHO, r, s, u, f);                                                           \
   }                                                                                                \
-  INLINE void green_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *ev, \
-                                 T h, T *m, T *X, T *f) {                                          \
-    (void)m;                                                                                       \
+  INLINE void green_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e,              \
+                                 const T *own, const T *ev, T h, T *m, T *X, T *f) {               \
+    (void)m, (void)own;                                                                            \
     green_blocks(E, ORTHO, r, e, ev, h, X, f);                                                     \
   }                                                                                                \
   STORAGE_EBE(green, TAG)                                                                          \
   STORAGE_EBE_PRODUCT(green, TAG)                                                                  \
-  STORAGE_CLUSTER(green, TAG, KEEP_STATE)                                                          \
+  STORAGE_CLUSTER(green, TAG)                                                                      \
   STORAGE_CLUSTER_PRODUCT(green, TAG)                                                              \
   STORAGE_BLOCKS(green, TAG, 0)
 GREEN(0, iso)

@@ -21,9 +21,9 @@ static void assembled(struct cb_elements *E, size_t thread) {
 /* The matrix is assembled once; afterwards only the force pass is left. */
 #define ASSEMBLED_ONCE(NAME, FULL, FORCE)                                                          \
   UPDATE_FUNCTION(                                                                                 \
-      NAME, if (E->assembled) FORCE(E, thread, x, v, h, out); else {                                       \
+      NAME, if (E->assembled) FORCE(E, thread, x, v, h, out); else {                               \
         FULL(E, thread, x, v, h, out);                                                             \
-        assembled(E, thread);                                                                     \
+        assembled(E, thread);                                                                      \
       })
 ASSEMBLED_ONCE(linear_assembled_once_iso, linear_assembled_update_iso, linear_ebe_update_iso)
 ASSEMBLED_ONCE(linear_assembled_once_ortho, linear_assembled_update_ortho, linear_ebe_update_ortho)

@@ -24,9 +24,9 @@ INLINE void polar_gradient(const T *S_, T *P) {
 }
 
 INLINE void polar_exact_pack(const struct cb_elements *E, int policy, int exact, int ortho,
-                             const T *rest, const T *e, T *memory, T *R, T *P, T *y) {
+                             const T *rest, const T *e, const T *own, T *memory, T *R, T *P, T *y) {
   T F[9], stretch[9];
-  (void)exact, (void)memory, (void)y;
+  (void)exact, (void)own, (void)memory, (void)y;
   deformation_gradient(policy, rest, e, F);
   frame_polar_closed(F, R);
   STAGE(STAGE_FORCE);
@@ -38,6 +38,7 @@ INLINE void polar_exact_pack(const struct cb_elements *E, int policy, int exact,
 
 #define SPARSE 0
 #define NO_FRAME 0
+#define FRAME_ROTATION(e, F, memory, R) frame_polar_closed(F, R)
 #define FRAME_PACK polar_exact_pack
 #include "kernels/models/corotated.h"
 

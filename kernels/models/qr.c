@@ -6,10 +6,39 @@
 #include "kernels/frames/qr.h"
 #include "kernels/models/strain.h"
 
-/* Rest shapes are kept in their own edge frame Q0, so that F Q0 = Q U with
- * U[6] = U11 U12 U22 U13 U23 U33 upper triangular. */
-INLINE void qr_stretch(int policy, const T *rest, const T *y, T *U) {
-  const T *g = rest + REST_G; /* rows b: xyz, c: 0yz, d: 00z */
+/* F[9] := F Q0. Rest shapes are kept in their own edge frame Q0: rest gradients are
+ * triangular where the vertices have their own order, b: xyz, c: 0yz, d: 00z. */
+INLINE void qr_gradient_of_edges(const struct cb_elements *E, int policy, const T *rest, const T *e,
+                                 T *F) {
+  const T *g = rest + REST_G;
+  if (!in_own_order(E)) {
+    deformation_gradient(policy, rest, e, F);
+    return;
+  }
+  for (int i = 0; i < 3; i++) {
+    F[3 * i] = e[i] * g[0];
+    F[3 * i + 1] = e[i] * g[1] + e[3 + i] * g[4];
+    F[3 * i + 2] = e[i] * g[2] + e[3 + i] * g[5] + e[6 + i] * g[8];
+  }
+  if (policy == POLICY_PRECOMPUTED)
+    for (int i = 0; i < 9; i++) F[i] = rest[REST_EDGE] * F[i];
+}
+
+/* F Q0 = R U, U[6] = U11 U12 U22 U13 U23 U33 upper triangular; from edges in local
+ * axes, y, where the vertices have their own order. */
+INLINE void qr_stretch(const struct cb_elements *E, int policy, const T *rest, const T *e,
+                       const T *R, const T *y, T *U) {
+  const T *g = rest + REST_G;
+  if (!in_own_order(E)) {
+    T F[9];
+    qr_gradient_of_edges(E, policy, rest, e, F);
+    for (int n = 0; n < 6; n++) {
+      static const uint8_t row[6] = {0, 0, 1, 0, 1, 2}, column[6] = {0, 1, 1, 2, 2, 2};
+      U[n] = LIT(0);
+      for (int i = 0; i < 9; i += 3) U[n] = U[n] + R[i + row[n]] * F[i + column[n]];
+    }
+    return;
+  }
   T s[6];
   for (int i = 0; i < 6; i++) s[i] = policy == POLICY_PRECOMPUTED ? rest[REST_EDGE] * y[i] : y[i];
   U[0] = s[0] * g[0];
@@ -39,19 +68,29 @@ INLINE void qr_gradient(const T *U, T *P) {
 }
 
 INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
-                    const T *e, T *memory, T *R, T *P, T *y) {
+                    const T *e, const T *own, T *memory, T *R, T *P, T *y) {
   T U[6];
   (void)memory;
-  frame_qr(e, R, y);
+  frame_qr(own, R, y);
   STAGE(STAGE_FORCE);
-  qr_stretch(policy, rest, y, U);
+  qr_stretch(E, policy, rest, e, R, y, U);
   qr_stress(E->k, ortho, rest, U, P);
   if (exact) qr_gradient(U, P);
+}
+
+INLINE void qr_world(const struct cb_elements *E, int policy, int ortho, const T *rest, const T *e,
+                     const T *own, T *memory, T *R, T *F) {
+  T y[3];
+  (void)ortho, (void)memory;
+  frame_qr_axes(own, R, y);
+  STAGE(STAGE_FORCE);
+  qr_gradient_of_edges(E, policy, rest, e, F);
 }
 
 #define SPARSE 1
 #define NO_FRAME 0
 #define FRAME_PACK qr_pack
+#define FRAME_WORLD qr_world
 #include "kernels/models/corotated.h"
 
 COROTATED_FAMILY(qr, "qr", "QR frame", "Nesme, Payan, Faure 2005", AXES_EDGES, 0, LAWS_ELEMENT,

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "kernels/arithmetics.h"
+#include "kernels/memory.h"
 #include "kernels/solver/stepper.h"
 #include "kernels/solver/vectors.h"
 
@@ -37,8 +38,7 @@ static enum cb_status create(struct cb_operator *op, const struct cb_step_parame
   const size_t bytes = (blocks_of(nodes) * BLOCK_SCALARS * sizeof(S) / 64 + 1) * 64;
   bool there = true;
   for (int i = 0; i < STEPPER_VECTORS; i++) {
-    s->vector[i] = aligned_alloc(64, bytes);
-    if (s->vector[i]) memset(s->vector[i], 0, bytes);
+    s->vector[i] = cb_memory(bytes, 1);
     there = there && s->vector[i];
   }
   for (size_t n = 0; fixed && n < nodes; n++) s->fixed_count += fixed[n] != 0;
@@ -57,21 +57,22 @@ static enum cb_status create(struct cb_operator *op, const struct cb_step_parame
   return CB_OK;
 }
 
-/* v := 0 on the fixed nodes among those scalars. */
+/* v := 0 on the fixed nodes among those scalars, which are whole nodes. */
 static void filter(const struct cb_stepper *s, struct share scalars, S *v) {
-  size_t low = 0, high = s->fixed_count; /* the first fixed node at or after scalars.first */
+  const size_t first = scalars.first / STRIDE, last = scalars.last / STRIDE;
+  size_t low = 0, high = s->fixed_count; /* the first fixed node from `first` on */
   while (low < high) {
     const size_t middle = (low + high) / 2;
-    if (STRIDE * (size_t)(s->fixed[middle] + 1) <= scalars.first)
+    if (s->fixed[middle] < first)
       low = middle + 1;
     else
       high = middle;
   }
-  for (; low < s->fixed_count; low++)
-    for (size_t i = STRIDE * (size_t)s->fixed[low], end = i + STRIDE; i < end; i++) {
-      if (i >= scalars.last) return;
-      if (i >= scalars.first) v[i] = 0;
-    }
+  for (; low < s->fixed_count && s->fixed[low] < last; low++) {
+    S *node = v + STRIDE * (size_t)s->fixed[low];
+#pragma GCC unroll 4
+    for (size_t i = 0; i < STRIDE; i++) node[i] = 0;
+  }
 }
 
 /* The sum over all threads, the same on each; which: two sums must not follow each

@@ -49,7 +49,11 @@ typedef ACC PART __attribute__((vector_size(sizeof(ACC) * CB_LANES / 2)));
   __builtin_shufflevector(t, t, 8 * n, 8 * n + 1, 8 * n + 2, 8 * n + 3, 8 * n + 4, 8 * n + 5,      \
                           8 * n + 6, 8 * n + 7)
 #endif
+#if CB_BYTES == 64 && defined __AVX512F__ /* gcc 12 would convert by quarters */
+#define PART_OF(t, n) (PART) _mm512_cvtps_pd((__m256)HALF(t, n))
+#else
 #define PART_OF(t, n) __builtin_convertvector(HALF(t, n), PART)
+#endif
 #else
 enum { SUM_PARTS = 1 };
 typedef T PART;

@@ -15,8 +15,8 @@
 
 /* One pack in an update, as update_pack_fn; X[6][9] are blocks, or what
  * edge_products makes. */
-typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *ev,
-                            T h, T *memory, T *X, T *f);
+typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
+                            const T *ev, T h, T *memory, T *X, T *f);
 
 /* K := k X + X^T + tr(X) I; a macro, because X is T in elements and S in sums. */
 #define BLOCK_FROM_PRODUCT(k, X, K)                                                                \
@@ -44,12 +44,12 @@ void CB_NAME(cb_assemble)(struct cb_elements *E, size_t thread, bool products);
 INLINE void update_blocks(struct cb_elements *E, const struct range *r, size_t p, const S *x,
                           const S *v, double h, S *out, blocks_pack_fn *blocks, T *X) {
   const uint32_t *tet = E->packs->node + p * 4 * LANES;
-  T own[REST_ISOTROPIC], e[9], ev[9], f[9];
-  const T *rest = rest_of(E, tet, p, own);
+  T made[REST_ISOTROPIC], e[9], ev[9], f[9];
+  const T *rest = rest_of(E, tet, p, made);
   STAGE(STAGE_FRAME);
   gather_edges(x, tet, e);
   if (v) gather_edges(v, tet, ev);
-  blocks(E, rest, e, v ? ev : NULL, LIT(h), E->memory + p * E->memory_numbers, X, f);
+  blocks(E, rest, e, e, v ? ev : NULL, LIT(h), E->memory + p * E->memory_numbers, X, f);
   scatter_edges(out, tet, live_lanes(r, p), f);
   STAGE(STAGE_ASSEMBLY);
 }

@@ -34,33 +34,34 @@ INLINE void add_locally(T *sum, const uint8_t *vertex, const T *f) {
 /* ---- the vertices' own order -------------------------------------------------- */
 
 /* is[4 j + s]: the own vertex j is vertex s of the shape. */
-INLINE void own_order(const uint8_t *order, MASK *is) {
-  MASK code = load_bytes(order);
-  for (int n = 0; n < 16; n++) is[n] = ((code >> (n / 4 * 2)) & 3) == n % 4;
+INLINE void own_order(const uint8_t *order, CHOICE *is) {
+  WHOLES code = load_bytes(order);
+  for (int n = 0; n < 16; n++) is[n] = EQUAL(code >> (n / 4 * 2) & 3, n % 4);
 }
 
-/* e rows b, c, d: edges in the order of the shape, then in the vertices' own. */
-INLINE void to_own_order(const uint8_t *order, T *e) {
-  MASK is[16];
+/* own rows b, c, d := edges in the vertices' own order, of e in that of the shape,
+ * whose vertex a is the origin. */
+INLINE void own_edges(const uint8_t *order, const T *e, T *own) {
+  CHOICE is[16];
   own_order(order, is);
   for (int i = 0; i < 3; i++) {
     T p[4];
-    for (int j = 0; j < 4; j++) /* the shape's a is the origin */
-      p[j] = SELECT(is[4 * j + 1], e[i],
-                    SELECT(is[4 * j + 2], e[3 + i], SELECT(is[4 * j + 3], e[6 + i], LIT(0))));
-    for (int j = 0; j < 3; j++) e[3 * j + i] = p[j + 1] - p[0];
+    for (int j = 0; j < 4; j++)
+      p[j] = CHOOSE(is[4 * j + 1], e[i],
+                    CHOOSE(is[4 * j + 2], e[3 + i], CHOOSE(is[4 * j + 3], e[6 + i], LIT(0))));
+    for (int j = 0; j < 3; j++) own[3 * j + i] = p[j + 1] - p[0];
   }
 }
 
-/* f rows b, c, d: shares that sum to zero over the vertices, in the vertices' own
- * order, then in that of the shape. */
-INLINE void to_shape_order(const uint8_t *order, T *f) {
-  MASK is[16];
+/* g rows b, c, d: gradients, which sum to zero over the vertices, in the vertices'
+ * own order, then in that of the shape. */
+INLINE void gradients_to_shape(const uint8_t *order, T *g) {
+  CHOICE is[16];
   own_order(order, is);
   for (int i = 0; i < 3; i++) {
-    T b = f[i], c = f[3 + i], d = f[6 + i], a = -(b + c + d);
+    T b = g[i], c = g[3 + i], d = g[6 + i], a = -(b + c + d);
     for (int s = 1; s < 4; s++)
-      f[3 * (s - 1) + i] = SELECT(is[s], a, SELECT(is[4 + s], b, SELECT(is[8 + s], c, d)));
+      g[3 * (s - 1) + i] = CHOOSE(is[s], a, CHOOSE(is[4 + s], b, CHOOSE(is[8 + s], c, d)));
   }
 }
 
@@ -73,47 +74,46 @@ struct pack_work {
   T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS];
 };
 
-/* Rest data of a slot: kept, or made in own[REST_ISOTROPIC]. */
+/* Rest data of a slot: kept, or made in made[REST_ISOTROPIC]. */
 INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *X,
-                             const uint8_t *vertex, const uint8_t *order, T *own) {
+                             const uint8_t *vertex, const uint8_t *order, T *made) {
   if (E->rest) return E->rest + slot * E->rest_numbers;
-  T e[9];
+  T e[9], own[9];
   STAGE(STAGE_REST);
   local_edges(X, vertex, e);
-  if (order) to_own_order(order, e);
-  rest_called(E, e, own);
-  return own;
+  if (order) own_edges(order, e, own);
+  rest_called(E, order ? own : e, made);
+  if (order) {
+    T c[9]; /* the sign that cofactors of the current edges will have */
+    gradients_to_shape(order, made + REST_G);
+    edge_cofactors(e, c);
+    if (E->policy == POLICY_UPDATED)
+      made[REST_FORCE] = SELECT(dot3(e, c) < LIT(0), -ABS(made[REST_FORCE]), ABS(made[REST_FORCE]));
+  }
+  return made;
 }
 
 /* The i-th tetrahedron of a pack's clusters. */
 INLINE void update_slot(struct cb_elements *E, struct pack_work *W, size_t i, bool moving, T h,
-                        update_pack_fn *update, enum cb_keep keep) {
+                        update_pack_fn *update, bool keep_state) {
   const size_t slot = W->pack->slot + i;
   const uint8_t *vertex = W->shape->vertex[i];
   const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
-  T own[REST_ISOTROPIC], e[9], ev[9], f[9], state[18];
-  T *kept = E->state + slot * E->state_numbers;
-  const T *rest = rest_of_slot(E, slot, W->X, vertex, order, own);
+  T made[REST_ISOTROPIC], e[9], own[9], ev[9], f[9], lost[18];
+  T *state = E->state + slot * E->state_numbers;
+  const T *rest = rest_of_slot(E, slot, W->X, vertex, order, made);
   STAGE(STAGE_FRAME);
   local_edges(W->x, vertex, e);
+  if (order) own_edges(order, e, own);
   if (moving) local_edges(W->v, vertex, ev);
-  if (order) {
-    to_own_order(order, e);
-    if (moving) to_own_order(order, ev);
-  }
-  update(E, rest, e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
-         keep == KEEP_STATE ? kept : state, f);
-  if (keep == KEEP_SCALE) kept[0] = rest[REST_W];
-  if (keep == KEEP_GRADIENTS) {
-    if (order) to_shape_order(order, state);
-    for (int n = 0; n < 9; n++) kept[n] = state[n];
-  }
-  if (order) to_shape_order(order, f);
+  if (!keep_state) state[0] = rest[REST_W];
+  update(E, rest, e, order ? own : e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
+         keep_state ? state : lost, f);
   add_locally(W->f, vertex, f);
 }
 
 void drive_update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
-                           S *out, update_pack_fn *update, enum cb_keep keep) {
+                           S *out, update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct pack_work W;
   if (E->x) {
@@ -132,7 +132,7 @@ void drive_update_clusters(struct cb_elements *E, size_t thread, const S *x, con
       if (v) load_cluster(v, node, W.shape->nodes, W.v);
       for (size_t n = 0; n < 3u * W.shape->nodes; n++) W.f[n] = LIT(0);
       for (size_t i = 0; i < W.shape->tets; i++)
-        update_slot(E, &W, i, v != NULL, LIT(h), update, keep);
+        update_slot(E, &W, i, v != NULL, LIT(h), update, E->x == NULL);
       add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
     }
     part_end(E, thread, part);
@@ -192,18 +192,25 @@ INLINE void by_positions(const struct cb_elements *E, size_t slot, product_pack_
 
 INLINE void by_model(const struct cb_elements *E, size_t slot, product_pack_fn *model, const T *e,
                      const T *du, T *f) {
-  const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
-  T u[9];
   (void)e;
-  for (int i = 0; i < 9; i++) u[i] = du[i];
-  if (order) to_own_order(order, u);
-  model(E, E->rest + slot * E->rest_numbers, E->state + slot * E->state_numbers, u, f);
-  if (order) to_shape_order(order, f);
+  model(E, E->rest + slot * E->rest_numbers, E->state + slot * E->state_numbers, du, f);
+}
+
+/* The processor's own foresight ends with a page; that of states too large for its
+ * caches does not. */
+enum { AHEAD = 8 }; /* slots */
+INLINE void by_far_gradients(const struct cb_elements *E, size_t slot, product_pack_fn *model,
+                             const T *e, const T *du, T *f) {
+  for (int i = 0; i < 9; i++) __builtin_prefetch(E->state + 9 * (slot + AHEAD) + i);
+  by_gradients(E, slot, model, e, du, f);
 }
 
 void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t thread,
                                            const void *u, void *y) {
-  product_clusters(E, thread, u, y, by_gradients, false, NULL);
+  if (E->far)
+    product_clusters(E, thread, u, y, by_far_gradients, false, NULL);
+  else
+    product_clusters(E, thread, u, y, by_gradients, false, NULL);
 }
 
 void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,

@@ -9,21 +9,14 @@
 #include "kernels/storage/drive.h"
 #include "kernels/team.h"
 
-/* What drive_update_clusters keeps of the state that a model's function makes. */
-enum cb_keep {
-  KEEP_STATE,     /* all, in the vertices' own order */
-  KEEP_GRADIENTS, /* nine gradients, in the order of the shape */
-  KEEP_SCALE      /* REST_W alone: the product makes the gradients of positions */
-};
-
 #define drive_update_clusters CB_NAME(cb_drive_update_clusters)
 #define drive_product_clusters CB_NAME(cb_drive_product_clusters)
+/* ebe-recompute keeps REST_W in the state's place, and the positions. */
 void drive_update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
-                           S *out, update_pack_fn *update, enum cb_keep keep);
-/* For a state in the vertices' own order. */
+                           S *out, update_pack_fn *update);
 void drive_product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
                             product_pack_fn *product);
-/* cb_product_fn for KEEP_GRADIENTS, and for KEEP_SCALE. */
+/* cb_product_fn: state = nine world gradients, or what ebe-recompute keeps. */
 void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t thread,
                                            const void *u, void *y);
 void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,

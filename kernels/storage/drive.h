@@ -15,11 +15,13 @@
 #include "kernels/tensor3.h"
 
 /* One pack in an update.
- * in      rest, e[9] edges (m), ev[9] edges of velocity (m/s) or NULL, h (s)
+ * in      rest; e[9] edges, m, and the same in the vertices' own order, the mesh's,
+ *         if clusters have another (packs->order), else own = e;
+ *         ev[9] edges of velocity, m/s, or NULL; h, s
  * in/out  memory
  * out     state, f[9] = share of h f - c K v on b, c, d */
-typedef void update_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *ev,
-                            T h, T *memory, T *state, T *f);
+typedef void update_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
+                            const T *ev, T h, T *memory, T *state, T *f);
 /* One pack in a product: f[9] := share of c K u on b, c, d for edges du[9]. */
 typedef void product_pack_fn(const struct cb_elements *E, const T *rest, const T *state,
                              const T *du, T *f);
@@ -129,12 +131,12 @@ DRIVER void drive_update(struct cb_elements *E, size_t thread, const S *x, const
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
       const uint32_t *tet = E->packs->node + p * 4 * LANES;
-      T own[REST_ISOTROPIC], e[9], ev[9], f[9];
-      const T *rest = rest_of(E, tet, p, own);
+      T made[REST_ISOTROPIC], e[9], ev[9], f[9];
+      const T *rest = rest_of(E, tet, p, made);
       STAGE(STAGE_FRAME);
       gather_edges(x, tet, e);
       if (v) gather_edges(v, tet, ev);
-      update(E, rest, e, v ? ev : NULL, LIT(h), E->memory + p * E->memory_numbers,
+      update(E, rest, e, e, v ? ev : NULL, LIT(h), E->memory + p * E->memory_numbers,
              E->state + p * E->state_numbers, f);
       scatter_edges(out, tet, live_lanes(&r, p), f);
     }

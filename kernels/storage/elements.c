@@ -10,6 +10,7 @@
 #include "kernels/arithmetics.h"
 #include "kernels/frames/polar_higham.h"
 #include "kernels/material.h"
+#include "kernels/memory.h"
 #include "kernels/storage/lanes.h"
 #include "kernels/team.h"
 
@@ -20,12 +21,10 @@ struct layout {
   REAL c, mu; /* scale of the product; Pa */
 };
 
-/* n zeroed elements of that size, on a cache line, counted. */
+/* The same, counted. */
 static void *array(struct cb_elements *E, size_t n, size_t size) {
-  size_t bytes = n * size;
-  if (size && bytes / size != n) return NULL;
-  void *a = aligned_alloc(64, (bytes + 63) / 64 * 64 + 64);
-  if (a) memset(a, 0, bytes), E->bytes += bytes;
+  void *a = cb_memory(n, size);
+  if (a) E->bytes += n * size;
   return a;
 }
 
@@ -149,14 +148,37 @@ static void element_rest(const struct layout *L, const struct cb_mesh *mesh, con
   }
 }
 
-/* tet[4] := the nodes of tetrahedron i of a pack, in their own order, on that lane. */
-static void slot_nodes(const struct cb_packs *P, size_t p, size_t i, size_t lane, uint32_t *tet) {
+/* tet[4] := the nodes of tetrahedron i of a pack, in the vertices' own order, on that
+ * lane; returns which vertices of the shape these are, two bits each. */
+static unsigned slot_nodes(const struct cb_packs *P, size_t p, size_t i, size_t lane,
+                           uint32_t *tet) {
   static const uint8_t single[4] = {0, 1, 2, 3};
   const uint8_t *vertex = P->pack ? P->shape[P->pack[p].shape].vertex[i] : single;
   const size_t first = P->pack ? P->pack[p].node : 4 * p;
   const unsigned code = P->order ? P->order[(P->pack[p].slot + i) * LANES + lane] : 0xe4;
   for (size_t j = 0; j < 4; j++)
     tet[j] = P->node[(first + vertex[code >> 2 * j & 3]) * LANES + lane];
+  return code;
+}
+
+/* Is the vertices' own order an odd permutation of the shape's? */
+static bool is_odd(unsigned code) {
+  unsigned inversions = 0;
+  for (int i = 0; i < 4; i++)
+    for (int j = i + 1; j < 4; j++) inversions += (code >> 2 * i & 3) > (code >> 2 * j & 3);
+  return inversions % 2;
+}
+
+/* r: rest data with b, c, d in the vertices' own order, then in the shape's; there
+ * cofactors of the edges, which updated B is made of, may have the other sign. */
+static void order_rest(const struct layout *L, unsigned code, REAL *r) {
+  REAL all[12], *g = r + REST_G;
+  if (L->model->policy == POLICY_UPDATED && is_odd(code)) r[REST_FORCE] = -r[REST_FORCE];
+  for (int i = 0; i < 3; i++) {
+    all[3 * (code & 3) + i] = -(g[i] + g[3 + i] + g[6 + i]);
+    for (int j = 1; j < 4; j++) all[3 * (code >> 2 * j & 3) + i] = g[3 * (j - 1) + i];
+  }
+  for (int i = 0; i < 9; i++) g[i] = all[3 + i];
 }
 
 static void fill_rest(const struct layout *L, const struct cb_mesh *mesh, struct cb_elements *E) {
@@ -168,8 +190,9 @@ static void fill_rest(const struct layout *L, const struct cb_mesh *mesh, struct
       for (size_t lane = 0; lane < LANES; lane++) {
         REAL r[REST_ORTHOTROPIC + 12];
         uint32_t tet[4];
-        slot_nodes(P, p, i, lane, tet);
+        const unsigned code = slot_nodes(P, p, i, lane, tet);
         element_rest(L, mesh, tet, r);
+        if (P->order) order_rest(L, code, r);
         for (size_t n = 0; n < E->rest_numbers; n++)
           LANE(E->rest[(slot + i) * E->rest_numbers + n], lane) = (S)r[n];
       }
@@ -178,7 +201,7 @@ static void fill_rest(const struct layout *L, const struct cb_mesh *mesh, struct
 
 /* Rest positions, from the middle of the mesh, which rounds them least. */
 static enum cb_status rest_positions(const struct cb_mesh *mesh, struct cb_elements *E) {
-  E->X = aligned_alloc(64, (STRIDE * mesh->nodes * sizeof(S) / 64 + 1) * 64);
+  E->X = cb_memory(STRIDE * mesh->nodes, sizeof(S));
   if (!E->X) return CB_MEMORY;
   double middle[3] = {0};
   for (size_t i = 0; i < 3 * mesh->nodes; i++) middle[i % 3] += mesh->X[i] / (double)mesh->nodes;
@@ -243,6 +266,9 @@ static enum cb_status upright(const struct cb_mesh *mesh, uint32_t **copy) {
   return CB_OK;
 }
 
+/* Bytes of it, a core; half a megabyte to two on what is in use. */
+static const size_t SECOND_CACHE = (size_t)1 << 20;
+
 static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh *mesh,
                                bool keeps_rest, struct cb_elements *E) {
   const size_t slots = E->packs->slots, threads = E->packs->threads;
@@ -250,6 +276,7 @@ static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh 
   if (keeps_rest) E->rest = array(E, slots * E->rest_numbers, sizeof(T));
   E->memory = array(E, slots * E->memory_numbers, sizeof(T));
   E->state = array(E, slots * E->state_numbers, sizeof(T));
+  E->far = slots * E->state_numbers * sizeof(T) > SECOND_CACHE;
   if (!E->turn || (keeps_rest && !E->rest) || !E->memory || !E->state) return CB_MEMORY;
   if (v->model->node_frames) {
     E->node_frame = array(E, 9 * E->nodes, sizeof(S));
@@ -257,7 +284,7 @@ static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh 
     if (!E->node_frame || !E->node_sum) return CB_MEMORY;
   }
   if (v->storage == CB_EBE_RECOMPUTE) { /* a node vector, not counted */
-    E->x = aligned_alloc(64, (STRIDE * mesh->nodes * sizeof(S) / 64 + 1) * 64);
+    E->x = cb_memory(STRIDE * mesh->nodes, sizeof(S));
     if (!E->x) return CB_MEMORY;
   }
   bool assembled = v->storage == CB_CSR || v->storage == CB_BCSR;
@@ -311,9 +338,10 @@ enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const str
   E->memory_numbers = v->model->memory_numbers;
   E->state_numbers = v->model->form[v->storage][L.orthotropic].state_numbers;
   constants(&L, &mesh, E);
-  /* One element at a time, memory is no limit: what is kept is not made again. */
-  const bool keeps_rest =
-      LANES == 1 || v->model->keeps_rest || L.orthotropic || E->axes == AXES_POLAR;
+  /* In clusters, and one element at a time, speed is the aim: what is kept is not
+   * made again. Single elements in lanes are as lean as can be. */
+  const bool keeps_rest = LANES == 1 || v->storage == CB_EBE_CLUSTER || v->model->keeps_rest ||
+                          L.orthotropic || E->axes == AXES_POLAR;
   enum cb_status status = CB_OK;
   if (E->axes == AXES_POLAR) status = upright(given, &turned);
   if (turned) mesh.tet = turned;
