@@ -12,7 +12,7 @@ static inline void cb_spin(size_t turns) {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #endif
-  if (turns > 2000) sched_yield();
+  if (turns > 500) sched_yield();
 }
 
 #endif

@@ -152,6 +152,18 @@ static inline void deform(gsl_rng *rng, struct scene *s) {
   } while (!(s->condition < 1000));
 }
 
+/* Everything but the mesh. */
+static inline void scene_complete(gsl_rng *rng, struct scene *s) {
+  size_t n = 3 * s->mesh.nodes;
+  s->x = malloc(n * sizeof *s->x);
+  s->v = malloc(n * sizeof *s->v);
+  s->u = malloc(n * sizeof *s->u);
+  assert_true(s->x && s->v && s->u);
+  random_vector(rng, n, s->v);
+  random_vector(rng, n, s->u);
+  deform(rng, s);
+}
+
 static inline struct scene scene_new(gsl_rng *rng, enum scene_kind kind) {
   struct scene s = {.condition = 1};
   if (kind == SCENE_GRID) {
@@ -161,14 +173,7 @@ static inline struct scene scene_new(gsl_rng *rng, enum scene_kind kind) {
     random_mesh(rng, 19, 23, &s.mesh);
   else
     one_tet(rng, kind == SCENE_MIRRORED, &s.mesh);
-  size_t n = 3 * s.mesh.nodes;
-  s.x = malloc(n * sizeof *s.x);
-  s.v = malloc(n * sizeof *s.v);
-  s.u = malloc(n * sizeof *s.u);
-  assert_true(s.x && s.v && s.u);
-  random_vector(rng, n, s.v);
-  random_vector(rng, n, s.u);
-  deform(rng, &s);
+  scene_complete(rng, &s);
   return s;
 }
 
