@@ -66,6 +66,12 @@ sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour
 	@$(MAKE) --no-print-directory BUILD=build-sanitize OPT=-O1 \
 	  SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' test
 
+# Races are looked for where threads share most: the slow sanitizer gets no more.
+races: | $(FIRST) ## threads on a larger mesh under the thread sanitizer
+	@$(MAKE) --no-print-directory BUILD=build-races OPT=-O1 SANFLAGS='-fsanitize=thread' \
+	  build-races/tests/test_threads
+	@TSAN_OPTIONS=halt_on_error=1 build-races/tests/test_threads '*_larger_*'
+
 verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
 	@$(BUILD)/corobench verify --output results/latest
 	@plots/draw.sh results/latest
@@ -110,7 +116,7 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize verify bench plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races verify bench plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -123,6 +129,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize verify bench plots help clean always
+.PHONY: all programs setup test sanitize races verify bench plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

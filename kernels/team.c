@@ -24,6 +24,8 @@ struct cb_team {
 static cpu_set_t allowed;
 static size_t pinned_teams;
 static _Atomic(struct cb_team *) running;
+/* Threads that have done their part. Not in the team: it may be freed right after. */
+static atomic_size_t finished;
 
 static void pin(size_t thread) {
   cpu_set_t own;
@@ -57,7 +59,14 @@ static void take_part(void) {
     pinned = true;
   }
   team->work(team->context, thread);
-  cb_team_barrier(team);
+  if (thread > 0) {
+    atomic_fetch_add_explicit(&finished, 1, memory_order_acq_rel);
+    return;
+  }
+  const size_t others = team->threads - 1;
+  for (size_t n = 0; atomic_load_explicit(&finished, memory_order_acquire) != others; n++)
+    cb_spin(n);
+  atomic_store_explicit(&finished, 0, memory_order_relaxed);
 }
 
 void cb_team_run(struct cb_team *team, cb_team_work *work, void *context) {

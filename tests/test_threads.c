@@ -154,7 +154,9 @@ static void threads_share_larger_meshes(void **state) {
   gsl_rng_free(rng);
 }
 
-int main(void) {
+/* argv[1]: a pattern of the tests to run; without it all of them. */
+int main(int argc, char **argv) {
+  if (argc > 1) cmocka_set_test_filter(argv[1]);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_team_has_a_size),           cmocka_unit_test(barriers_hold_everybody),
       cmocka_unit_test(shares_are_all_and_once),     cmocka_unit_test(threads_do_what_one_does),
