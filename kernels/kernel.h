@@ -74,6 +74,7 @@ enum cb_storage {
   CB_EBE_MATRIX,    /* unassembled: the element's stiffness matrix */
   CB_CSR,           /* assembled, scalar rows */
   CB_BCSR,          /* assembled, 3x3 blocks */
+  CB_BCSR_SYMMETRIC, /* assembled, 3x3 blocks on and above the diagonal */
   CB_STORAGES
 };
 extern const char *const cb_storage_name[CB_STORAGES];
