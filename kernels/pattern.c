@@ -4,8 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One element at one edge: its high node above its term. */
+/* One element at one edge: the high node, then 16 times the element's number plus 4
+ * times the vertex of the low node plus that of the high one. */
 typedef uint64_t share;
+
+static share share_of(uint32_t node, size_t element, unsigned low, unsigned high) {
+  return (uint64_t)node << 32 | (16 * element + 4 * low + high);
+}
+
+static uint32_t low_vertex(share s) { return (uint32_t)s / 4; }
+
+static uint32_t high_vertex(share s) { return (uint32_t)s / 16 * 4 + (uint32_t)s % 4; }
 
 static int by_value(const void *a, const void *b) {
   uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
@@ -27,8 +36,7 @@ static void list_shares(const struct cb_packs *packs, share *shares, uint32_t *s
             low = cb_tet_edge[e][1], high = cb_tet_edge[e][0];
           const size_t i = tet[low * lanes];
           if (shares)
-            shares[start[i + 1]++] =
-                (uint64_t)tet[high * lanes] << 32 | cb_term(p * lanes + l, low, high);
+            shares[start[i + 1]++] = share_of(tet[high * lanes], p * lanes + l, low, high);
           else
             start[i + 1]++;
         }
@@ -73,7 +81,7 @@ static size_t count_edges(size_t nodes, const share *shares, const uint32_t *sta
 
 /* Edges, their terms, and high[edges]: their high nodes. */
 static void fill_edges(struct cb_pattern *p, const share *shares, const uint32_t *start,
-                       uint32_t *high) {
+                       size_t stride, uint32_t *high) {
   uint32_t edge = 0;
   for (size_t i = 0; i < p->nodes; i++) {
     p->edge_start[i] = edge;
@@ -82,7 +90,8 @@ static void fill_edges(struct cb_pattern *p, const share *shares, const uint32_t
         high[edge] = (uint32_t)(shares[n] >> 32);
         p->term_start[edge++] = n;
       }
-      p->term[n] = (uint32_t)shares[n];
+      p->term[2 * (size_t)n] = (uint32_t)stride * low_vertex(shares[n]);
+      p->term[2 * (size_t)n + 1] = (uint32_t)stride * high_vertex(shares[n]);
     }
   }
   p->edge_start[p->nodes] = edge;
@@ -125,7 +134,7 @@ static void share_rows(struct cb_pattern *p) {
 
 static enum cb_status allocate(struct cb_pattern *p, size_t terms) {
   const size_t counts[] = {p->nodes + 1, p->blocks,    p->nodes + 1, p->nodes + 1,
-                           p->edges,     p->edges + 1, terms};
+                           p->edges,     p->edges + 1, 2 * terms};
   uint32_t **arrays[] = {&p->row_start, &p->column,     &p->edge_start, &p->lower_start,
                          &p->mirror,    &p->term_start, &p->term};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
@@ -139,7 +148,7 @@ static enum cb_status allocate(struct cb_pattern *p, size_t terms) {
 }
 
 enum cb_status cb_pattern_create(const struct cb_mesh *mesh, const struct cb_packs *packs,
-                                 bool symmetric, struct cb_pattern **out) {
+                                 size_t stride, bool symmetric, struct cb_pattern **out) {
   const size_t terms = 6 * mesh->tets;
   if (16 * packs->packs * packs->lanes > UINT32_MAX) return CB_INPUT;
   share *shares = NULL;
@@ -155,7 +164,7 @@ enum cb_status cb_pattern_create(const struct cb_mesh *mesh, const struct cb_pac
   high = malloc(p->edges * sizeof *high + 1);
   status = p->blocks > UINT32_MAX / 9 ? CB_INPUT : !high ? CB_MEMORY : allocate(p, terms);
   if (status) goto done;
-  fill_edges(p, shares, start, high);
+  fill_edges(p, shares, start, stride, high);
   fill_rows(p, high);
   share_rows(p);
   *out = p;

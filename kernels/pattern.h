@@ -34,26 +34,24 @@ struct cb_pattern {
   uint32_t *mirror;            /* [edges] the block above the diagonal whose transpose
                                   is below it, in the order of columns of each row */
   uint32_t *term_start;        /* [edges+1] */
-  uint32_t *term;              /* [6 tets] an edge's elements: cb_term */
+  uint32_t *term;              /* [6 tets][2] an edge's elements, each by two of its
+                                  vertices, of the low and of the high node; vertex j of
+                                  pack p's lane l is stride * (4 * (p * lanes + l) + j) */
   size_t threads, beyond;      /* all rows beyond threads' own */
   struct cb_rows *rows;        /* [threads] */
   size_t bytes;
 };
 
-/* Edge from vertex `low` to `high` (of the lower and the higher node) of the
- * element at slot * lanes + lane. */
-static inline uint32_t cb_term(size_t element, unsigned low, unsigned high) {
-  return (uint32_t)(16 * element + 4 * low + high);
-}
-
+/* The diagonal block of a row. */
 static inline uint32_t cb_pattern_diagonal(const struct cb_pattern *p, size_t row) {
   return p->row_start[row + 1] - 1 - (p->edge_start[row + 1] - p->edge_start[row]);
 }
 
-/* packs: of single tetrahedra. CB_MEMORY; CB_INPUT when the numbers of the blocks or
- * the terms do not fit 32 bits. */
+/* packs: of single tetrahedra; stride: numbers that are kept of a vertex, at most 4.
+ * CB_MEMORY; CB_INPUT when the numbers of the blocks or of the elements' vertices do
+ * not fit 32 bits. */
 enum cb_status cb_pattern_create(const struct cb_mesh *mesh, const struct cb_packs *packs,
-                                 bool symmetric, struct cb_pattern **out);
+                                 size_t stride, bool symmetric, struct cb_pattern **out);
 void cb_pattern_free(struct cb_pattern *p); /* NULL is allowed */
 
 #endif

@@ -5,6 +5,8 @@
 #include "kernels/pattern.h"
 #include "tests/scene.h"
 
+enum { STRIDE = 3 };
+
 /* shared[nodes*nodes] */
 static bool *brute_force(const struct cb_mesh *mesh) {
   bool *shared = calloc(mesh->nodes * mesh->nodes, sizeof *shared);
@@ -56,12 +58,16 @@ static void check_terms(const struct cb_pattern *p, const struct cb_mesh *mesh,
     for (size_t e = p->edge_start[i]; e < p->edge_start[i + 1]; e++) {
       assert_true(p->term_start[e] < p->term_start[e + 1]);
       for (size_t n = p->term_start[e]; n < p->term_start[e + 1]; n++, terms++) {
-        const size_t element = p->term[n] / 16, low = p->term[n] / 4 % 4, high = p->term[n] % 4;
+        const uint32_t *ends = p->term + 2 * n;
+        assert_true(ends[0] % STRIDE == 0 && ends[1] % STRIDE == 0);
+        const size_t element = ends[0] / (4 * STRIDE);
+        const size_t low = ends[0] / STRIDE % 4, high = ends[1] / STRIDE % 4;
         const uint32_t *tet = packs->node + 4 * (element / lanes) * lanes + element % lanes;
         assert_true(element < elements);
         assert_int_equal(tet[low * lanes], i);
         assert_int_equal(tet[high * lanes], high_end(p, i, e));
-        assert_int_equal(times[p->term[n]]++, 0);
+        assert_int_equal(ends[1] / (4 * STRIDE), element);
+        assert_int_equal(times[16 * element + 4 * low + high]++, 0);
       }
     }
   assert_int_equal(terms, 6 * mesh->tets);
@@ -108,7 +114,7 @@ static struct cb_pattern *pattern_new(const struct cb_mesh *mesh, size_t lanes, 
   struct cb_packs *packs;
   struct cb_pattern *p;
   assert_int_equal(cb_packs_create(mesh, lanes, threads, false, &packs), CB_OK);
-  assert_int_equal(cb_pattern_create(mesh, packs, symmetric, &p), CB_OK);
+  assert_int_equal(cb_pattern_create(mesh, packs, STRIDE, symmetric, &p), CB_OK);
   check_terms(p, mesh, packs);
   cb_packs_free(packs);
   return p;

@@ -67,7 +67,10 @@ INLINE struct block block_load(const S *first, size_t step) {
 
 INLINE void block_store(const struct block *b, S *first, size_t step) {
   for (size_t r = 0; r < 3; r++)
-    for (size_t c = 0; c < 3; c++) first[r * step + c] = b->row[r][c];
+    if (step == 3 && r < 2) /* the fourth number is the next row's first */
+      *(LOOSE_NODE *)(first + 3 * r) = b->row[r];
+    else
+      for (size_t c = 0; c < 3; c++) first[r * step + c] = b->row[r][c];
 }
 
 INLINE void block_subtract(struct block *b, const struct block *a) {

@@ -208,7 +208,7 @@ static enum cb_status scalar_pattern(struct cb_elements *E) {
 static enum cb_status assembled_arrays(const struct cb_variant *v, const struct cb_mesh *mesh,
                                        struct cb_elements *E) {
   enum cb_status status =
-      cb_pattern_create(mesh, E->packs, v->storage == CB_BCSR_SYMMETRIC, &E->pattern);
+      cb_pattern_create(mesh, E->packs, STRIDE, v->storage == CB_BCSR_SYMMETRIC, &E->pattern);
   if (status) return status;
   E->bytes += E->pattern->bytes;
   E->values = array(E, 9 * E->pattern->blocks + BLOCK_MARGIN, sizeof(S));
@@ -219,8 +219,8 @@ static enum cb_status assembled_arrays(const struct cb_variant *v, const struct 
 
 void CB_NAME(cb_elements_free)(struct cb_elements *E) {
   if (!E) return;
-  void *arrays[] = {E->turn,       E->X,        E->rest,   E->memory,     E->state,
-                    E->x,          E->beyond,   E->values, E->scalar_row, E->scalar_column,
+  void *arrays[] = {E->turn,       E->X,       E->rest,   E->memory,     E->state,
+                    E->x,          E->beyond,  E->values, E->scalar_row, E->scalar_column,
                     E->node_frame, E->node_sum};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
   cb_packs_free(E->packs);
