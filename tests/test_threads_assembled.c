@@ -7,7 +7,7 @@
 static const double H = 0.01, C = 0.3;
 static const size_t THREADS[] = {2, 3, 5};
 
-/* Elements are added up in another order: measured at most 0.8 units of rounding
+/* Elements are added up in another order: measured at most 0.5 units of rounding
  * times the condition. */
 static const double LIMIT = 4;
 

@@ -22,9 +22,16 @@ INLINE void add_row(const ROW_SUM *sum, S *y) {
   for (int r = 0; r < 3; r++) y[r] += sum->at[r];
 }
 
+/* x, y and z of a node, each as often as a row has numbers. */
+typedef struct {
+  S at[3];
+} SPREAD;
+
+INLINE SPREAD spread_node(const S *u) { return (SPREAD){{u[0], u[1], u[2]}}; }
+
 /* y += K^T u */
-INLINE void add_transposed(const S *K, const S *u, S *y) {
-  for (int c = 0; c < 3; c++) y[c] += K[c] * u[0] + K[3 + c] * u[1] + K[6 + c] * u[2];
+INLINE void add_transposed(const S *K, const SPREAD *u, S *y) {
+  for (int c = 0; c < 3; c++) y[c] += K[c] * u->at[0] + K[3 + c] * u->at[1] + K[6 + c] * u->at[2];
 }
 #else
 typedef struct block ROW_SUM;
@@ -41,9 +48,14 @@ INLINE void add_row(const ROW_SUM *sum, S *y) {
   *(LOOSE_NODE *)y += t[0] + t[1] + t[2];
 }
 
-INLINE void add_transposed(const S *K, const S *u, S *y) {
-  NODE sum = node_load(K) * node_splat(u[0]) + node_load(K + 3) * node_splat(u[1]) +
-             node_load(K + 6) * node_splat(u[2]);
+typedef struct block SPREAD;
+
+INLINE SPREAD spread_node(const S *u) {
+  return (SPREAD){{node_splat(u[0]), node_splat(u[1]), node_splat(u[2])}};
+}
+
+INLINE void add_transposed(const S *K, const SPREAD *u, S *y) {
+  NODE sum = node_load(K) * u->row[0] + node_load(K + 3) * u->row[1] + node_load(K + 6) * u->row[2];
   sum[3] = 0;
   *(LOOSE_NODE *)y += sum;
 }
@@ -52,14 +64,15 @@ INLINE void add_transposed(const S *K, const S *u, S *y) {
 void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, size_t thread, const void *vector,
                               void *result) {
   const struct cb_pattern *p = E->pattern;
+  const struct cb_rows own = p->rows[thread];
   const S *restrict u = vector, *restrict K = E->values;
+  const uint32_t *restrict row = p->row_start, *restrict column = p->column;
   S *restrict y = result;
   STAGE(STAGE_PRODUCT);
-  const struct cb_rows *own = &p->rows[thread];
-  for (size_t i = own->first; i < own->last; i++) {
+  for (size_t i = own.first; i < own.last; i++) {
     ROW_SUM sum = {0};
-    for (size_t n = p->row_start[i]; n < p->row_start[i + 1]; n++)
-      add_block(&sum, K + 9 * n, u + STRIDE * (size_t)p->column[n]);
+    for (size_t n = row[i], end = row[i + 1]; n < end; n++)
+      add_block(&sum, K + 9 * n, u + STRIDE * (size_t)column[n]);
     add_row(&sum, y + STRIDE * i);
   }
 }
@@ -79,21 +92,23 @@ static void add_beyond(const struct cb_elements *E, size_t thread, S *y) {
 void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thread,
                                         const void *vector, void *result) {
   const struct cb_pattern *p = E->pattern;
-  const struct cb_rows *own = &p->rows[thread];
+  const struct cb_rows own = p->rows[thread];
   const S *restrict u = vector, *restrict K = E->values;
-  S *y = result, *beyond = E->beyond + STRIDE * own->beyond;
+  const uint32_t *restrict row = p->row_start, *restrict column = p->column;
+  S *y = result, *beyond = E->beyond + STRIDE * own.beyond;
   STAGE(STAGE_PRODUCT);
-  for (size_t i = 0; i < STRIDE * (own->reach - own->last); i++) beyond[i] = 0;
-  for (size_t i = own->first; i < own->last; i++) {
+  for (size_t i = 0; i < STRIDE * (own.reach - own.last); i++) beyond[i] = 0;
+  for (size_t i = own.first; i < own.last; i++) {
+    const SPREAD spread = spread_node(u + STRIDE * i);
+    const size_t end = row[i + 1];
+    size_t n = row[i];
     ROW_SUM sum = {0};
-    const S *ui = u + STRIDE * i;
-    size_t n = p->row_start[i];
-    add_block(&sum, K + 9 * n, ui);
-    for (n++; n < p->row_start[i + 1]; n++) {
-      const size_t j = p->column[n];
+    add_block(&sum, K + 9 * n, u + STRIDE * i);
+    for (n++; n < end; n++) {
+      const size_t j = column[n];
       add_block(&sum, K + 9 * n, u + STRIDE * j);
-      add_transposed(K + 9 * n, ui,
-                     j < own->last ? y + STRIDE * j : beyond + STRIDE * (j - own->last));
+      add_transposed(K + 9 * n, &spread,
+                     j < own.last ? y + STRIDE * j : beyond + STRIDE * (j - own.last));
     }
     add_row(&sum, y + STRIDE * i);
   }
