@@ -10,15 +10,15 @@
 
 /* Where the blocks of a row are: the first of them, how far they are apart, and how
  * far a block's rows are. */
-struct place {
+struct block_row {
   S *first;
   size_t step, row_step;
 };
 
-INLINE struct place row_at(const struct cb_elements *E, bool scalar, size_t row) {
+INLINE struct block_row row_at(const struct cb_elements *E, bool scalar, size_t row) {
   const size_t start = E->pattern->row_start[row];
-  if (!scalar) return (struct place){E->values + 9 * start, 9, 3};
-  return (struct place){E->values + 9 * start, 3, 3 * (E->pattern->row_start[row + 1] - start)};
+  if (!scalar) return (struct block_row){E->values + 9 * start, 9, 3};
+  return (struct block_row){E->values + 9 * start, 3, 3 * (E->pattern->row_start[row + 1] - start)};
 }
 
 /* Sum of the elements' w_low w_high^T at one edge, expanded. */
@@ -26,9 +26,8 @@ INLINE struct block sum_gradients(const struct cb_elements *E, size_t edge) {
   const struct cb_pattern *p = E->pattern;
   const S *w = (const S *)E->state;
   struct block X = {0};
-  for (size_t n = p->term_start[edge]; n < p->term_start[edge + 1]; n++) {
+  for (size_t n = p->term_start[edge]; n < p->term_start[edge + 1]; n++)
     block_add_product(&X, w + p->term[2 * n], w + p->term[2 * n + 1]);
-  }
   return block_from_products(LANE(E->k, 0), &X);
 }
 
@@ -53,7 +52,7 @@ INLINE struct block sum_blocks(const struct cb_elements *E, size_t edge) {
 /* Blocks above the diagonal; minus their sum goes to the diagonal. */
 INLINE void fill_upper(const struct cb_elements *E, bool scalar, bool gradients, size_t row) {
   const struct cb_pattern *p = E->pattern;
-  const struct place own = row_at(E, scalar, row);
+  const struct block_row own = row_at(E, scalar, row);
   S *diagonal = own.first + own.step * (cb_pattern_diagonal(p, row) - p->row_start[row]);
   S *at = diagonal + own.step;
   struct block rest = {0};
@@ -70,14 +69,14 @@ INLINE struct block mirror_block(const struct cb_elements *E, bool scalar, size_
                                  const uint32_t *column) {
   const size_t slot = E->pattern->mirror[n];
   if (!scalar) return block_load(E->values + 9 * slot, 3);
-  const struct place other = row_at(E, true, *column);
+  const struct block_row other = row_at(E, true, *column);
   return block_load(other.first + 3 * (slot - E->pattern->row_start[*column]), other.row_step);
 }
 
 /* Blocks below the diagonal, if they are kept, and what they leave for it. */
 INLINE void fill_lower(const struct cb_elements *E, bool scalar, bool symmetric, size_t row) {
   const struct cb_pattern *p = E->pattern;
-  const struct place own = row_at(E, scalar, row);
+  const struct block_row own = row_at(E, scalar, row);
   const uint32_t *column = p->column + p->row_start[row];
   S *at = own.first;
   struct block rest = {0};

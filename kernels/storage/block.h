@@ -7,9 +7,8 @@
 
 #include "kernels/storage/blocks.h"
 
-/* Rows are read four numbers at a time: so many may be read after the last block,
- * by a product of whole blocks more. */
-enum { BLOCK_MARGIN = 7 };
+/* Rows are read four numbers at a time: so many are read after the last block. */
+enum { BLOCK_MARGIN = 1 };
 
 #if CB_LANES == 1
 struct block {
