@@ -72,8 +72,8 @@ struct cb_elements {
   S *x;                            /* ebe-recompute: positions of the last update, a node vector */
   /* assembled storages */
   struct cb_pattern *pattern;
-  S *edge_sum;                          /* [edges][9] */
-  S *values;                            /* csr or bcsr numbers of c K */
+  S *values; /* numbers of c K: [blocks][9], or (csr) rows of numbers */
+  S *beyond; /* bcsr-symmetric: what threads add to rows of others, node vectors */
   uint32_t *scalar_row, *scalar_column; /* csr: [3 nodes + 1], [9 blocks] into node vectors */
   bool assembled;                       /* values are there (constant operators keep them) */
   /* node-warp */

@@ -67,13 +67,14 @@ void cb_mesh_mass(const struct cb_mesh *mesh, double density, double *mass);
 
 /* How the stiffness product of each conjugate gradient iteration is done. */
 enum cb_storage {
-  CB_EBE_PAPER,     /* unassembled: R, B, D apart, the paper's chain */
-  CB_EBE,           /* unassembled: world-frame gradients, no frame stored */
-  CB_EBE_CLUSTER,   /* the same in clusters that share their nodes */
-  CB_EBE_RECOMPUTE, /* in clusters, gradients made of the positions in each product */
-  CB_EBE_MATRIX,    /* unassembled: the element's stiffness matrix */
-  CB_CSR,           /* assembled, scalar rows */
-  CB_BCSR,          /* assembled, 3x3 blocks */
+  CB_EBE_PAPER,      /* unassembled: R, B, D apart, the paper's chain */
+  CB_EBE,            /* unassembled: world-frame gradients, no frame stored */
+  CB_EBE_CLUSTER,    /* the same in clusters that share their nodes */
+  CB_EBE_RECOMPUTE,  /* in clusters, gradients made of the positions in each product */
+  CB_EBE_MATRIX,     /* unassembled: the element's stiffness matrix */
+  CB_CSR,            /* assembled, scalar rows */
+  CB_BCSR,           /* assembled, 3x3 blocks */
+  CB_BCSR_SYMMETRIC, /* assembled, 3x3 blocks on and above the diagonal */
   CB_STORAGES
 };
 extern const char *const cb_storage_name[CB_STORAGES];

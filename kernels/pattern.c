@@ -2,100 +2,177 @@
 #include "kernels/pattern.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+/* One element at one edge: the high node, then 16 times the element's number plus 4
+ * times the vertex of the low node plus that of the high one. */
+typedef uint64_t share;
+
+static share share_of(uint32_t node, size_t element, unsigned low, unsigned high) {
+  return (uint64_t)node << 32 | (16 * element + 4 * low + high);
+}
+
+static uint32_t low_vertex(share s) { return (uint32_t)s / 4; }
+
+static uint32_t high_vertex(share s) { return (uint32_t)s / 16 * 4 + (uint32_t)s % 4; }
 
 static int by_value(const void *a, const void *b) {
   uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
   return (x > y) - (x < y);
 }
 
-static uint64_t edge_key(const uint32_t *tet, int edge) {
-  uint32_t i = tet[cb_tet_edge[edge][0]], j = tet[cb_tet_edge[edge][1]];
-  return i < j ? (uint64_t)i << 32 | j : (uint64_t)j << 32 | i;
-}
-
-/* keys := the distinct edges, ascending; returns their number. */
-static size_t unique_edges(const struct cb_mesh *mesh, uint64_t *keys) {
-  size_t n = 0, count = 0;
-  for (size_t t = 0; t < mesh->tets; t++)
-    for (int e = 0; e < 6; e++) keys[n++] = edge_key(mesh->tet + 4 * t, e);
-  qsort(keys, n, sizeof *keys, by_value);
-  for (size_t i = 0; i < n; i++)
-    if (i == 0 || keys[i] != keys[i - 1]) keys[count++] = keys[i];
-  return count;
-}
-
-/* Edges come in ascending (low, high): filling the lower halves of all rows
- * first and the upper halves after the diagonal keeps columns ascending. */
-static void fill_rows(struct cb_pattern *p) {
-  uint32_t *next = p->row_start + 1; /* next[i] ends as the start of row i+1 */
-  for (size_t i = 0; i <= p->nodes; i++) p->row_start[i] = 0;
-  for (size_t e = 0; e < p->edges; e++) next[p->low[e]]++, next[p->high[e]]++;
-  for (size_t i = 0, start = 0; i < p->nodes; i++) {
-    size_t count = next[i] + 1;
-    next[i] = (uint32_t)start;
-    start += count;
-  }
-  for (size_t e = 0; e < p->edges; e++) {
-    p->lower[e] = next[p->high[e]]++;
-    p->column[p->lower[e]] = p->low[e];
-  }
-  for (size_t i = 0; i < p->nodes; i++) {
-    p->diagonal[i] = next[i]++;
-    p->column[p->diagonal[i]] = (uint32_t)i;
-  }
-  for (size_t e = 0; e < p->edges; e++) {
-    p->upper[e] = next[p->low[e]]++;
-    p->column[p->upper[e]] = p->high[e];
-  }
-}
-
-static void map_elements(const struct cb_packs *packs, const uint64_t *keys, struct cb_pattern *p) {
+/* Shares of all elements by low node: those of node i are start[i] to start[i+1] - 1.
+ * Counts them (shares NULL), or puts each to where start[i + 1] says, and moves that. */
+static void list_shares(const struct cb_packs *packs, share *shares, uint32_t *start) {
   const size_t lanes = packs->lanes;
-  for (size_t n = 0; n < packs->packs * lanes; n++) {
-    uint32_t tet[4];
-    for (size_t j = 0; j < 4; j++) tet[j] = packs->node[(n / lanes * 4 + j) * lanes + n % lanes];
-    for (int e = 0; e < 6; e++) {
-      uint64_t key = edge_key(tet, e);
-      const uint64_t *found = bsearch(&key, keys, p->edges, sizeof *keys, by_value);
-      int turned = tet[cb_tet_edge[e][0]] > tet[cb_tet_edge[e][1]];
-      p->edge_of[(n / lanes * 6 + e) * lanes + n % lanes] =
-          2 * (uint32_t)(found - keys) + (uint32_t)turned;
+  for (size_t t = 0; t < packs->threads; t++)
+    for (size_t p = packs->chunk[t].part[0]; p < packs->chunk[t].part[3]; p++) {
+      const bool last = p + 1 == packs->chunk[t].part[3];
+      for (size_t l = 0; l < (last ? packs->chunk[t].last_live : lanes); l++)
+        for (int e = 0; e < 6; e++) {
+          unsigned low = cb_tet_edge[e][0], high = cb_tet_edge[e][1];
+          const uint32_t *tet = packs->node + 4 * p * lanes + l;
+          if (tet[low * lanes] > tet[high * lanes])
+            low = cb_tet_edge[e][1], high = cb_tet_edge[e][0];
+          const size_t i = tet[low * lanes];
+          if (shares)
+            shares[start[i + 1]++] = share_of(tet[high * lanes], p * lanes + l, low, high);
+          else
+            start[i + 1]++;
+        }
+    }
+}
+
+/* counts[i + 1] becomes the sum of the counts before i. */
+static void sum_before(size_t n, uint32_t *counts) {
+  uint32_t sum = 0;
+  for (size_t i = 1; i <= n; i++) {
+    const uint32_t count = counts[i];
+    counts[i] = sum;
+    sum += count;
+  }
+}
+
+/* *out := shares by low node, then high node; start[nodes+1]. */
+static enum cb_status sort_shares(size_t nodes, const struct cb_packs *packs, size_t terms,
+                                  uint32_t *start, share **out) {
+  share *shares = malloc(terms * sizeof *shares + 1);
+  if (!shares) return CB_MEMORY;
+  memset(start, 0, (nodes + 1) * sizeof *start);
+  list_shares(packs, NULL, start);
+  sum_before(nodes, start);
+  list_shares(packs, shares, start);
+  for (size_t i = 0; i < nodes; i++)
+    qsort(shares + start[i], start[i + 1] - start[i], sizeof *shares, by_value);
+  *out = shares;
+  return CB_OK;
+}
+
+static bool new_edge(const share *shares, size_t first, size_t n) {
+  return n == first || shares[n] >> 32 != shares[n - 1] >> 32;
+}
+
+static size_t count_edges(size_t nodes, const share *shares, const uint32_t *start) {
+  size_t edges = 0;
+  for (size_t i = 0; i < nodes; i++)
+    for (size_t n = start[i]; n < start[i + 1]; n++) edges += new_edge(shares, start[i], n);
+  return edges;
+}
+
+/* Edges, their terms, and high[edges]: their high nodes. */
+static void fill_edges(struct cb_pattern *p, const share *shares, const uint32_t *start,
+                       size_t stride, uint32_t *high) {
+  uint32_t edge = 0;
+  for (size_t i = 0; i < p->nodes; i++) {
+    p->edge_start[i] = edge;
+    for (uint32_t n = start[i]; n < start[i + 1]; n++) {
+      if (new_edge(shares, start[i], n)) {
+        high[edge] = (uint32_t)(shares[n] >> 32);
+        p->term_start[edge++] = n;
+      }
+      p->term[2 * (size_t)n] = (uint32_t)stride * low_vertex(shares[n]);
+      p->term[2 * (size_t)n + 1] = (uint32_t)stride * high_vertex(shares[n]);
     }
   }
+  p->edge_start[p->nodes] = edge;
+  p->term_start[edge] = start[p->nodes];
+}
+
+/* Edges come in ascending (low, high), so that columns do as well. */
+static void fill_rows(struct cb_pattern *p, const uint32_t *high) {
+  memset(p->lower_start, 0, (p->nodes + 1) * sizeof *p->lower_start);
+  for (size_t e = 0; e < p->edges; e++) p->lower_start[high[e] + 1]++;
+  for (size_t i = 0; i < p->nodes; i++) p->lower_start[i + 1] += p->lower_start[i];
+  for (size_t i = 0; i <= p->nodes; i++)
+    p->row_start[i] = (uint32_t)i + p->edge_start[i] + (p->symmetric ? 0 : p->lower_start[i]);
+  for (size_t i = 0; i < p->nodes; i++) {
+    uint32_t block = cb_pattern_diagonal(p, i);
+    p->column[block++] = (uint32_t)i;
+    for (uint32_t e = p->edge_start[i]; e < p->edge_start[i + 1]; e++, block++) {
+      const uint32_t row = high[e], n = p->lower_start[row]++;
+      p->column[block] = row;
+      p->mirror[n] = block;
+      if (!p->symmetric) p->column[row + p->edge_start[row] + n] = (uint32_t)i;
+    }
+  }
+  memmove(p->lower_start + 1, p->lower_start, p->nodes * sizeof *p->lower_start);
+  p->lower_start[0] = 0;
+}
+
+static void share_rows(struct cb_pattern *p) {
+  size_t row = 0;
+  for (size_t t = 0; t < p->threads; t++) {
+    struct cb_rows *r = &p->rows[t];
+    *r = (struct cb_rows){.first = row, .beyond = p->beyond};
+    while (row < p->nodes && p->row_start[row] < p->blocks * (t + 1) / p->threads) row++;
+    r->last = r->reach = row;
+    for (size_t b = p->row_start[r->first]; b < p->row_start[r->last]; b++)
+      if (p->column[b] >= r->reach) r->reach = (size_t)p->column[b] + 1;
+    p->beyond += r->reach - r->last;
+  }
+}
+
+static enum cb_status allocate(struct cb_pattern *p, size_t terms) {
+  const size_t counts[] = {p->nodes + 1, p->blocks,    p->nodes + 1, p->nodes + 1,
+                           p->edges,     p->edges + 1, 2 * terms};
+  uint32_t **arrays[] = {&p->row_start, &p->column,     &p->edge_start, &p->lower_start,
+                         &p->mirror,    &p->term_start, &p->term};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    *arrays[i] = malloc(counts[i] * sizeof **arrays[i] + 1);
+    if (!*arrays[i]) return CB_MEMORY;
+    p->bytes += counts[i] * sizeof **arrays[i];
+  }
+  p->rows = malloc(p->threads * sizeof *p->rows);
+  p->bytes += p->threads * sizeof *p->rows;
+  return p->rows ? CB_OK : CB_MEMORY;
 }
 
 enum cb_status cb_pattern_create(const struct cb_mesh *mesh, const struct cb_packs *packs,
-                                 struct cb_pattern **out) {
-  enum cb_status status = CB_MEMORY;
+                                 size_t stride, bool symmetric, struct cb_pattern **out) {
+  const size_t terms = 6 * mesh->tets;
+  if (16 * packs->packs * packs->lanes > UINT32_MAX) return CB_INPUT;
+  share *shares = NULL;
+  uint32_t *start = malloc((mesh->nodes + 1) * sizeof *start), *high = NULL;
   struct cb_pattern *p = calloc(1, sizeof *p);
-  uint64_t *keys = malloc(6 * mesh->tets * sizeof *keys + 1);
-  if (!p || !keys) goto done;
-  p->nodes = mesh->nodes;
-  p->edges = unique_edges(mesh, keys);
-  p->blocks = p->nodes + 2 * p->edges;
-  if (p->blocks > UINT32_MAX / 9) {
-    status = CB_INPUT;
-    goto done;
-  }
-  size_t mapped = packs->packs * packs->lanes * 6;
-  size_t counts[] = {p->nodes + 1, p->blocks, p->nodes, p->edges,
-                     p->edges,     p->edges,  p->edges, mapped};
-  uint32_t **arrays[] = {&p->row_start, &p->column, &p->diagonal, &p->upper,
-                         &p->lower,     &p->low,    &p->high,     &p->edge_of};
-  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-    *arrays[i] = malloc(counts[i] * sizeof **arrays[i] + 1);
-    if (!*arrays[i]) goto done;
-    p->bytes += counts[i] * sizeof **arrays[i];
-  }
-  for (size_t e = 0; e < p->edges; e++)
-    p->low[e] = (uint32_t)(keys[e] >> 32), p->high[e] = (uint32_t)keys[e];
-  fill_rows(p);
-  map_elements(packs, keys, p);
+  enum cb_status status = CB_MEMORY;
+  if (!p || !start) goto done;
+  status = sort_shares(mesh->nodes, packs, terms, start, &shares);
+  if (status) goto done;
+  p->nodes = mesh->nodes, p->symmetric = symmetric, p->threads = packs->threads;
+  p->edges = count_edges(p->nodes, shares, start);
+  p->blocks = p->nodes + (symmetric ? 1 : 2) * p->edges;
+  high = malloc(p->edges * sizeof *high + 1);
+  status = p->blocks > UINT32_MAX / 9 ? CB_INPUT : !high ? CB_MEMORY : allocate(p, terms);
+  if (status) goto done;
+  fill_edges(p, shares, start, stride, high);
+  fill_rows(p, high);
+  share_rows(p);
   *out = p;
   p = NULL;
-  status = CB_OK;
 done:
-  free(keys);
+  free(shares);
+  free(start);
+  free(high);
   cb_pattern_free(p);
   return status;
 }
@@ -104,11 +181,11 @@ void cb_pattern_free(struct cb_pattern *p) {
   if (!p) return;
   free(p->row_start);
   free(p->column);
-  free(p->diagonal);
-  free(p->upper);
-  free(p->lower);
-  free(p->low);
-  free(p->high);
-  free(p->edge_of);
+  free(p->edge_start);
+  free(p->lower_start);
+  free(p->mirror);
+  free(p->term_start);
+  free(p->term);
+  free(p->rows);
   free(p);
 }

@@ -29,8 +29,9 @@ bool cb_arithmetic_runs(const struct cb_arithmetic *a) {
   return a->needs[0] == '\0';
 }
 
-const char *const cb_storage_name[CB_STORAGES] = {
-    "ebe-paper", "ebe", "ebe-cluster", "ebe-recompute", "ebe-matrix", "csr", "bcsr"};
+const char *const cb_storage_name[CB_STORAGES] = {"ebe-paper",     "ebe",           "ebe-cluster",
+                                                  "ebe-recompute", "ebe-matrix",    "csr",
+                                                  "bcsr",          "bcsr-symmetric"};
 const char *const cb_storage_summary[CB_STORAGES] = {
     "unassembled: R, B and D apart, the paper's chain",
     "unassembled: world-frame gradients, no frame stored",
@@ -39,6 +40,7 @@ const char *const cb_storage_summary[CB_STORAGES] = {
     "unassembled: element stiffness matrix, six 3x3 blocks",
     "assembled: compressed scalar rows",
     "assembled: compressed rows of 3x3 blocks",
+    "assembled: the same without the blocks below the diagonal",
 };
 const char *const cb_law_name[CB_LAWS] = {"rotation", "newton",    "euler",         "energy",
                                           "order",    "symmetric", "semi-definite", "tangent"};

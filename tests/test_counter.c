@@ -122,7 +122,8 @@ static void products_cost_what_their_formulas_say(void **state) {
                {"green", CB_EBE_MATRIX, 81, 96},
                {"qr-updated", CB_CSR, 144, 156},
                {"linear", CB_CSR, 144, 156},
-               {"svd-updated", CB_BCSR, 144, 156}};
+               {"svd-updated", CB_BCSR, 144, 156},
+               {"svd-updated", CB_BCSR_SYMMETRIC, 144, 156}};
   gsl_rng *rng = scene_rng();
   struct scene s = scene_new(rng, SCENE_ONE);
   for (size_t n = 0; n < sizeof table / sizeof *table; n++) {

@@ -16,9 +16,7 @@ static const double PAPER_CROSSING = 50; /* section 3.2 */
 
 static bool wanted(const struct cb_variant *v) { return strcmp(v->model->name, "qr-updated") == 0; }
 
-static bool assembled(const struct cb_variant *v) {
-  return v->storage == CB_CSR || v->storage == CB_BCSR;
-}
+static bool assembled(const struct cb_variant *v) { return v->storage >= CB_CSR; }
 
 /* The line of a job's times, and as many as the bootstrap draws. */
 struct job_line {

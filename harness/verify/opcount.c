@@ -13,7 +13,7 @@ const char *const cb_stage_name[STAGES] = {"rest",  "scatter",  "frame",  "strai
 
 static enum cb_status sample_mesh(const struct cb_variant *v, struct cb_mesh *mesh) {
   static const double X[12] = {0, 0, 0, 1, 0.1, 0, 0.2, 1, 0.1, 0.3, 0.2, 1};
-  if (v->storage == CB_CSR || v->storage == CB_BCSR || v->model->node_frames)
+  if (v->storage >= CB_CSR || v->model->node_frames)
     return cb_mesh_grid(7, 7, 7, 1, mesh);
   enum cb_status status = cb_mesh_allocate(4, 1, mesh);
   for (uint32_t i = 0; i < 12 && !status; i++) mesh->X[i] = X[i], mesh->tet[i % 4] = i % 4;

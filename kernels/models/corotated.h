@@ -203,7 +203,8 @@ INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, int o
                   f);
 }
 
-/* ---- ebe-matrix, csr, bcsr: edge products (isotropic) or blocks ------------ */
+/* ---- ebe-matrix: edge products (isotropic) or blocks; assembled: gradients or
+ * blocks ------------------------------------------------------------------------ */
 
 INLINE void corotated_blocks(const struct cb_elements *E, corotated_pack_fn *pack, int ortho,
                              const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
@@ -215,6 +216,13 @@ INLINE void corotated_blocks(const struct cb_elements *E, corotated_pack_fn *pac
     edge_blocks_local(rest + REST_D, R, w, X);
   else
     edge_products(w, X);
+}
+
+/* Isotropic: what is assembled are gradients. */
+INLINE void corotated_gradients(const struct cb_elements *E, corotated_pack_fn *pack, const T *rest,
+                                const T *e, const T *own, const T *ev, T h, T *memory, T *w, T *f) {
+  T R[9];
+  pack(E, rest, e, own, ev, h, memory, R, w, f);
 }
 
 /* ---- ebe-paper: state R, and B if it changes; D apart ---------------------- */
@@ -275,9 +283,17 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                                 const T *ev, T h, T *m, T *X, T *f) {                              \
     corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, own, ev, h, m, X, f);                        \
   }                                                                                                \
+  INLINE void ID##_terms_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
+                               const T *ev, T h, T *m, T *X, T *f) {                               \
+    if (ORTHO)                                                                                     \
+      ID##_blocks_##TAG(E, r, e, own, ev, h, m, X, f);                                             \
+    else                                                                                           \
+      corotated_gradients(E, ID##_pack_##TAG, r, e, own, ev, h, m, X, f);                          \
+  }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
   STORAGE_CLUSTER(ID, TAG)                                                                         \
-  STORAGE_BLOCKS(ID, TAG, !(ORTHO))
+  STORAGE_BLOCKS(ID, TAG, !(ORTHO))                                                                \
+  STORAGE_ASSEMBLED(ID, TAG, ID##_terms_##TAG, (ORTHO) ? TERMS_BLOCKS : TERMS_GRADIENTS)
 
 #define COROTATED_PRODUCT(ID, POLICY, ORTHO, TAG)                                                  \
   INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
@@ -339,10 +355,9 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                         FORM_CLUSTER(ID, ortho, COROTATED_STATE_EBE(POLICY, 1))},                  \
     [CB_EBE_RECOMPUTE] = {{COROTATED_RECOMPUTE_FORM(ID, POLICY)}, {NULL, NULL, 0}},                \
     [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), FORM_MATRIX(ID, ortho)},                              \
-    [CB_CSR] = {FORM_CSR(ID, iso), FORM_CSR(ID, ortho)}, [CB_BCSR] = {                             \
-      FORM_BCSR(ID, iso),                                                                          \
-      FORM_BCSR(ID, ortho)                                                                         \
-    }                                                                                              \
+    [CB_CSR] = FORMS_CSR(ID, TERMS_GRADIENTS, TERMS_BLOCKS),                                       \
+    [CB_BCSR] = FORMS_BCSR(ID, TERMS_GRADIENTS, TERMS_BLOCKS),                                     \
+    [CB_BCSR_SYMMETRIC] = FORMS_BCSR_SYMMETRIC(ID, TERMS_GRADIENTS, TERMS_BLOCKS),                 \
   }
 
 /* ID: C stem of the model; NAME, SUMMARY, SOURCE: strings; AXES, MEMORY: see

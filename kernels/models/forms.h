@@ -40,9 +40,11 @@
 /* PRODUCTS: blocks come as edge products. */
 #define STORAGE_BLOCKS(ID, TAG, PRODUCTS)                                                          \
   UPDATE_FUNCTION(ID##_matrix_update_##TAG,                                                        \
-                  drive_update_matrix(E, thread, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))       \
+                  drive_update_matrix(E, thread, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))
+/* TERMS: TERMS_GRADIENTS or TERMS_BLOCKS, what the element function FN makes. */
+#define STORAGE_ASSEMBLED(ID, TAG, FN, TERMS)                                                      \
   UPDATE_FUNCTION(ID##_assembled_update_##TAG,                                                     \
-                  drive_update_assembled(E, thread, x, v, h, out, ID##_blocks_##TAG, PRODUCTS))
+                  drive_update_assembled(E, thread, x, v, h, out, FN, (TERMS) == TERMS_GRADIENTS))
 
 #define FORM_EBE(ID, TAG, NUMBERS)                                                                 \
   { ID##_ebe_update_##TAG, ID##_ebe_run_##TAG, NUMBERS }
@@ -56,9 +58,16 @@
   { ID##_paper_update_##TAG, ID##_paper_run_##TAG, NUMBERS }
 #define FORM_MATRIX(ID, TAG)                                                                       \
   { ID##_matrix_update_##TAG, CB_NAME(cb_product_matrix), 54 }
-#define FORM_CSR(ID, TAG)                                                                          \
-  { ID##_assembled_update_##TAG, CB_NAME(cb_product_csr), 0 }
-#define FORM_BCSR(ID, TAG)                                                                         \
-  { ID##_assembled_update_##TAG, CB_NAME(cb_product_bcsr), 0 }
+/* The assembled storages; ISO, ORTHO: TERMS_*. */
+#define FORMS_ASSEMBLED(ID, PRODUCT, ISO, ORTHO)                                                   \
+  {                                                                                                \
+    {ID##_assembled_update_iso, CB_NAME(PRODUCT), ISO}, {                                          \
+      ID##_assembled_update_ortho, CB_NAME(PRODUCT), ORTHO                                         \
+    }                                                                                              \
+  }
+#define FORMS_CSR(ID, ISO, ORTHO) FORMS_ASSEMBLED(ID, cb_product_csr, ISO, ORTHO)
+#define FORMS_BCSR(ID, ISO, ORTHO) FORMS_ASSEMBLED(ID, cb_product_bcsr, ISO, ORTHO)
+#define FORMS_BCSR_SYMMETRIC(ID, ISO, ORTHO)                                                       \
+  FORMS_ASSEMBLED(ID, cb_product_bcsr_symmetric, ISO, ORTHO)
 
 #endif

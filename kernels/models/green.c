@@ -108,7 +108,8 @@ INLINE void green_blocks(const struct cb_elements *E, int ortho, const T *rest, 
   STORAGE_EBE_PRODUCT(green, TAG)                                                                  \
   STORAGE_CLUSTER(green, TAG)                                                                      \
   STORAGE_CLUSTER_PRODUCT(green, TAG)                                                              \
-  STORAGE_BLOCKS(green, TAG, 0)
+  STORAGE_BLOCKS(green, TAG, 0)                                                                    \
+  STORAGE_ASSEMBLED(green, TAG, green_blocks_##TAG, TERMS_BLOCKS)
 GREEN(0, iso)
 GREEN(1, ortho)
 
@@ -126,5 +127,6 @@ const struct cb_model CB_NAME(cb_model_green) = {
     .form = {[CB_EBE] = {FORM_EBE(green, iso, 15), FORM_EBE(green, ortho, 15)},
              [CB_EBE_CLUSTER] = {FORM_CLUSTER(green, iso, 15), FORM_CLUSTER(green, ortho, 15)},
              [CB_EBE_MATRIX] = {FORM_MATRIX(green, iso), FORM_MATRIX(green, ortho)},
-             [CB_CSR] = {FORM_CSR(green, iso), FORM_CSR(green, ortho)},
-             [CB_BCSR] = {FORM_BCSR(green, iso), FORM_BCSR(green, ortho)}}};
+             [CB_CSR] = FORMS_CSR(green, TERMS_BLOCKS, TERMS_BLOCKS),
+             [CB_BCSR] = FORMS_BCSR(green, TERMS_BLOCKS, TERMS_BLOCKS),
+             [CB_BCSR_SYMMETRIC] = FORMS_BCSR_SYMMETRIC(green, TERMS_BLOCKS, TERMS_BLOCKS)}};

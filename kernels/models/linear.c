@@ -25,8 +25,8 @@ static void assembled(struct cb_elements *E, size_t thread) {
         FULL(E, thread, x, v, h, out);                                                             \
         assembled(E, thread);                                                                      \
       })
-ASSEMBLED_ONCE(linear_assembled_once_iso, linear_assembled_update_iso, linear_ebe_update_iso)
-ASSEMBLED_ONCE(linear_assembled_once_ortho, linear_assembled_update_ortho, linear_ebe_update_ortho)
+ASSEMBLED_ONCE(linear_once_assembled_update_iso, linear_assembled_update_iso, linear_ebe_update_iso)
+ASSEMBLED_ONCE(linear_once_assembled_update_ortho, linear_assembled_update_ortho, linear_ebe_update_ortho)
 ASSEMBLED_ONCE(linear_matrix_once_iso, linear_matrix_update_iso, linear_ebe_update_iso)
 ASSEMBLED_ONCE(linear_matrix_once_ortho, linear_matrix_update_ortho, linear_ebe_update_ortho)
 
@@ -45,7 +45,7 @@ const struct cb_model CB_NAME(cb_model_linear) = {
              [CB_EBE_CLUSTER] = {FORM_CLUSTER(linear, iso, 0), FORM_CLUSTER(linear, ortho, 0)},
              [CB_EBE_MATRIX] = {{linear_matrix_once_iso, CB_NAME(cb_product_matrix), 54},
                                 {linear_matrix_once_ortho, CB_NAME(cb_product_matrix), 54}},
-             [CB_CSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_csr), 0},
-                         {linear_assembled_once_ortho, CB_NAME(cb_product_csr), 0}},
-             [CB_BCSR] = {{linear_assembled_once_iso, CB_NAME(cb_product_bcsr), 0},
-                          {linear_assembled_once_ortho, CB_NAME(cb_product_bcsr), 0}}}};
+             [CB_CSR] = FORMS_CSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),
+             [CB_BCSR] = FORMS_BCSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),
+             [CB_BCSR_SYMMETRIC] =
+                 FORMS_BCSR_SYMMETRIC(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS)}};

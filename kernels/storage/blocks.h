@@ -2,19 +2,17 @@
  * an element), csr and bcsr (assembled). K is symmetric and its rows sum to
  * zero, so the six off-diagonal blocks of an element, and the blocks of the
  * mesh's edges, are all there is: K_ji = K_ij^T, K_ii = -sum_j K_ij.
- * Assembly sums per edge and expands once.
+ * Assembly sums what elements kept, edge by edge, and expands once.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_BLOCKS_H
 #define CB_BLOCKS_H
 
-#include <string.h>
-
 #include "kernels/storage/drive.h"
 #include "kernels/team.h"
 
 /* One pack in an update, as update_pack_fn; X[6][9] are blocks, or what
- * edge_products makes. */
+ * edge_products makes; or X[9] are gradients. */
 typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
                             const T *ev, T h, T *memory, T *X, T *f);
 
@@ -29,15 +27,18 @@ typedef void blocks_pack_fn(const struct cb_elements *E, const T *rest, const T 
       }                                                                                            \
   } while (0)
 
-/* Update of ebe-matrix (state = six blocks), and of csr and bcsr; products: the
- * blocks come as edge products. */
+/* Update of ebe-matrix (state = six blocks); products: they come as edge products. */
 DRIVER void drive_update_matrix(struct cb_elements *E, size_t thread, const S *x, const S *v,
                                 double h, S *out, blocks_pack_fn *blocks, int products);
+/* Update of the assembled storages (state = what terms makes, TERMS_*); gradients:
+ * nine world gradients w_j, whose blocks are k w_i w_j^T + w_j w_i^T + (w_i . w_j) I;
+ * else six blocks. */
 DRIVER void drive_update_assembled(struct cb_elements *E, size_t thread, const S *x, const S *v,
-                                   double h, S *out, blocks_pack_fn *blocks, int products);
+                                   double h, S *out, blocks_pack_fn *terms, int gradients);
+enum { TERMS_GRADIENTS = 4 * STRIDE, TERMS_BLOCKS = 54 };
 
-/* One thread's share of the values of csr or bcsr, from the edge sums. */
-void CB_NAME(cb_assemble)(struct cb_elements *E, size_t thread, bool products);
+/* One thread's rows of an assembled matrix, from the state of all elements. */
+void CB_NAME(cb_assemble)(struct cb_elements *E, size_t thread, bool gradients);
 
 #if CB_LANES == 1 || defined(CB_DEFINE_DRIVERS)
 /* Gather, blocks X[54] and forces of one pack, scatter. */
@@ -71,37 +72,45 @@ DRIVER void drive_update_matrix(struct cb_elements *E, size_t thread, const S *x
   }
 }
 
-/* Sums X[6][9] into the edges, turned where the edge runs from high to low node. */
-INLINE void sum_edges(struct cb_elements *E, size_t pack, size_t live, const T *X) {
-  const uint32_t *edge_of = E->pattern->edge_of + pack * 6 * LANES;
-  S numbers[54 * LANES]; /* [6][9][LANES] */
-  memcpy(numbers, X, sizeof numbers);
-  for (size_t l = 0; l < live; l++)
-    for (size_t n = 0; n < 6; n++) {
-      uint32_t edge = edge_of[n * LANES + l];
-      S *sum = E->edge_sum + 9 * (size_t)(edge >> 1);
-      const S *block = numbers + 9 * LANES * n + l;
-      for (size_t i = 0; i < 9; i++) sum[i] += block[LANES * (edge & 1 ? i % 3 * 3 + i / 3 : i)];
-    }
+/* w[9] of b, c, d, and minus their sum of a, as whole nodes: [lanes][4]. */
+INLINE void keep_gradients(const T *w, S *to) {
+  T all[12];
+  for (int i = 0; i < 3; i++) all[i] = -(w[i] + w[3 + i] + w[6 + i]);
+  for (int i = 0; i < 9; i++) all[3 + i] = w[i];
+#if CB_LANES == 1
+  for (int i = 0; i < 12; i++) to[i] = all[i];
+#else
+  for (int j = 0; j < 4; j++) {
+    T g[4];
+    nodes_of_lanes(all + 3 * j, g);
+#define KEEP_QUAD(q)                                                                               \
+  for (int k = 0; k < 4; k++) *(LOOSE_NODE *)(to + 4 * (4 * (4 * (q) + k) + j)) = NODE_OF(g[k], q)
+    KEEP_QUAD(0);
+#if CB_LANES > 4
+    KEEP_QUAD(1);
+#endif
+#if CB_LANES > 8
+    KEEP_QUAD(2);
+    KEEP_QUAD(3);
+#endif
+#undef KEEP_QUAD
+  }
+#endif
 }
 
 DRIVER void drive_update_assembled(struct cb_elements *E, size_t thread, const S *x, const S *v,
-                                   double h, S *out, blocks_pack_fn *blocks, int products) {
-  size_t first, last;
-  cb_team_share(9 * E->pattern->edges, E->packs->threads, thread, &first, &last);
-  for (size_t i = first; i < last; i++) E->edge_sum[i] = (S)0;
-  cb_team_barrier(E->team);
+                                   double h, S *out, blocks_pack_fn *terms, int gradients) {
   for (int part = 0; part < 3; part++) {
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
-      T X[54];
-      update_blocks(E, &r, p, x, v, h, out, blocks, X);
-      sum_edges(E, p, live_lanes(&r, p), X);
+      T *state = E->state + p * E->state_numbers, w[9];
+      update_blocks(E, &r, p, x, v, h, out, terms, gradients ? w : state);
+      if (gradients) keep_gradients(w, (S *)state);
     }
     part_end(E, thread, part);
   }
   cb_team_barrier(E->team);
-  CB_NAME(cb_assemble)(E, thread, products);
+  CB_NAME(cb_assemble)(E, thread, gradients);
 }
 #endif
 

@@ -11,6 +11,7 @@
 #include "kernels/frames/polar_higham.h"
 #include "kernels/material.h"
 #include "kernels/memory.h"
+#include "kernels/storage/block.h"
 #include "kernels/storage/lanes.h"
 #include "kernels/team.h"
 
@@ -230,19 +231,20 @@ static enum cb_status scalar_pattern(struct cb_elements *E) {
 
 static enum cb_status assembled_arrays(const struct cb_variant *v, const struct cb_mesh *mesh,
                                        struct cb_elements *E) {
-  enum cb_status status = cb_pattern_create(mesh, E->packs, &E->pattern);
+  enum cb_status status =
+      cb_pattern_create(mesh, E->packs, STRIDE, v->storage == CB_BCSR_SYMMETRIC, &E->pattern);
   if (status) return status;
   E->bytes += E->pattern->bytes;
-  E->edge_sum = array(E, 9 * E->pattern->edges, sizeof(S));
-  E->values = array(E, 9 * E->pattern->blocks, sizeof(S));
-  if (!E->edge_sum || !E->values) return CB_MEMORY;
+  E->values = array(E, 9 * E->pattern->blocks + BLOCK_MARGIN, sizeof(S));
+  E->beyond = array(E, STRIDE * E->pattern->beyond, sizeof(S));
+  if (!E->values || !E->beyond) return CB_MEMORY;
   return v->storage == CB_CSR ? scalar_pattern(E) : CB_OK;
 }
 
 void CB_NAME(cb_elements_free)(struct cb_elements *E) {
   if (!E) return;
-  void *arrays[] = {E->turn,       E->X,        E->rest,   E->memory,     E->state,
-                    E->x,          E->edge_sum, E->values, E->scalar_row, E->scalar_column,
+  void *arrays[] = {E->turn,       E->X,       E->rest,   E->memory,     E->state,
+                    E->x,          E->beyond,  E->values, E->scalar_row, E->scalar_column,
                     E->node_frame, E->node_sum};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
   cb_packs_free(E->packs);
@@ -287,8 +289,7 @@ static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh 
     E->x = cb_memory(STRIDE * mesh->nodes, sizeof(S));
     if (!E->x) return CB_MEMORY;
   }
-  bool assembled = v->storage == CB_CSR || v->storage == CB_BCSR;
-  return assembled ? assembled_arrays(v, mesh, E) : CB_OK;
+  return v->storage >= CB_CSR ? assembled_arrays(v, mesh, E) : CB_OK;
 }
 
 /* From node numbers, which nothing needs any more, to places (lanes.h). */

@@ -97,9 +97,9 @@ INLINE void load_nodes(const S *vector, const uint32_t *place, T *p) {
   }
 }
 
-/* vector += f[3] at the nodes at place[live]. */
-INLINE void add_to_nodes(S *vector, const uint32_t *place, size_t live, const T *f) {
-  T zero = LIT(0), g[4];
+/* g[4] := f[3] turned into nodes: lane 4 q + k is NODE_OF(g[k], q). */
+INLINE void nodes_of_lanes(const T *f, T *g) {
+  T zero = LIT(0);
   if (sizeof(S) == 4) {
     T low = SHUFFLE(f[0], f[1], 0, 4, 1, 5), high = SHUFFLE(f[0], f[1], 2, 6, 3, 7);
     T low2 = SHUFFLE(f[2], zero, 0, 4, 1, 5), high2 = SHUFFLE(f[2], zero, 2, 6, 3, 7);
@@ -115,6 +115,12 @@ INLINE void add_to_nodes(S *vector, const uint32_t *place, size_t live, const T 
     g[0] = SHUFFLE(even, even2, 0, 1, 4, 5), g[2] = SHUFFLE(even, even2, 2, 3, 6, 7);
     g[1] = SHUFFLE(odd, odd2, 0, 1, 4, 5), g[3] = SHUFFLE(odd, odd2, 2, 3, 6, 7);
   }
+}
+
+/* vector += f[3] at the nodes at place[live]. */
+INLINE void add_to_nodes(S *vector, const uint32_t *place, size_t live, const T *f) {
+  T g[4];
+  nodes_of_lanes(f, g);
 #define ADD_QUAD(q, some)                                                                          \
   for (int k = 0; k < 4; k++)                                                                      \
     if (!(some) || 4 * (q) + k < (int)live)                                                        \

@@ -14,5 +14,7 @@ void CB_NAME(cb_product_matrix)(const struct cb_elements *E, size_t thread, cons
 /* assembled: values */
 void CB_NAME(cb_product_csr)(const struct cb_elements *E, size_t thread, const void *u, void *y);
 void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, size_t thread, const void *u, void *y);
+void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thread, const void *u,
+                                        void *y);
 
 #endif
