@@ -8,6 +8,13 @@ quoted(name) = "'" . in(name) . "'" # for the shell
 if (!exists("footer_file")) footer_file = "footer.txt"
 footer = system("head -n 1 " . quoted(footer_file) . " 2>/dev/null")
 
+# The groups that figures 4 and 7 draw one plot of each: those columns of bench.csv, joined.
+group_list(figure, key) = system("awk -F'[,/]' '$1 == " . figure . " && $9 > 0 && !seen[" . key . \
+  "]++ {print " . key . "}' " . quoted("bench.csv"))
+part(group, n) = system("echo '" . group . "' | cut -d@ -f" . n)
+many_lanes(arithmetic) = strstrt(arithmetic, "x") > 0
+in_threads(threads) = threads eq "1" ? "one thread" : threads . " threads"
+
 set encoding utf8
 set datafile separator comma
 set datafile columnheaders

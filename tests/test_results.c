@@ -93,9 +93,10 @@ static void test_samples_csv(void **state) {
   make_run(&r, true);
   assert_int_equal(cb_results_write(&r), CB_OK);
   read_line("samples.csv", 0, line);
-  assert_string_equal(line, "figure,variant,tetrahedra,iterations,round,steps,step_s,cpu_s,quick");
+  assert_string_equal(
+      line, "figure,variant,tetrahedra,iterations,threads,round,steps,step_s,cpu_s,quick");
   read_line("samples.csv", 1 + ROUNDS + 2, line);
-  assert_memory_equal(line, "4,m/csr/f64,3430,5,2,10,7", 24);
+  assert_memory_equal(line, "4,m/csr/f64,3430,5,1,2,10,7", 26);
   assert_string_equal(line + strlen(line) - 2, ",1"); /* quick */
   cb_results_free(&r);
 }
@@ -129,9 +130,9 @@ static void test_other_tables(void **state) {
   struct cb_results r;
   char line[1024];
   make_run(&r, false);
-  const struct cb_ratio ratio = {"7", "a/ebe/f64", "b/ebe/f64", 500, 5, {1.5, 1.25, 2}, NAN};
-  const struct cb_fit fit = {"a/ebe/f64", 500, {1, 0.5, 2}, {0.25, 0.125, 0.5}};
-  const struct cb_crossing never = {"a/csr/f64", "a/ebe/f64", 500, {INFINITY, 64, INFINITY}, 50};
+  const struct cb_ratio ratio = {"7", "a/ebe/f64", "b/ebe/f64", 500, 5, 2, 1, {1.5, 1.25, 2}, NAN};
+  const struct cb_fit fit = {"a/ebe/f64", 500, 2, {1, 0.5, 2}, {0.25, 0.125, 0.5}};
+  const struct cb_crossing never = {"a/csr/f64", "a/ebe/f64", 500, 2, {INFINITY, 64, INFINITY}, 50};
   const struct cb_convergence point = {"a/ebe/f64", 500, 20, 4e-4, NAN};
   assert_int_equal(cb_results_add_ratio(&r, &ratio), CB_OK);
   assert_int_equal(cb_results_add_fit(&r, &fit), CB_OK);
@@ -139,11 +140,11 @@ static void test_other_tables(void **state) {
   assert_int_equal(cb_results_add_convergence(&r, &point), CB_OK);
   assert_int_equal(cb_results_write(&r), CB_OK);
   read_line("ratios.csv", 1, line);
-  assert_string_equal(line, "7,a/ebe/f64,b/ebe/f64,500,5,1.5,1.25,2,,0");
+  assert_string_equal(line, "7,a/ebe/f64,b/ebe/f64,500,5,2,1,1.5,1.25,2,,0");
   read_line("fits.csv", 1, line);
-  assert_string_equal(line, "a/ebe/f64,500,1,0.5,2,0.25,0.125,0.5,0");
+  assert_string_equal(line, "a/ebe/f64,500,2,1,0.5,2,0.25,0.125,0.5,0");
   read_line("crossings.csv", 1, line);
-  assert_string_equal(line, "a/csr/f64,a/ebe/f64,500,,64,,50,never,0");
+  assert_string_equal(line, "a/csr/f64,a/ebe/f64,500,2,,64,,50,never,0");
   read_line("convergence.csv", 1, line);
   assert_memory_equal(line, "a/ebe/f64,500,", 14);
   assert_string_equal(line + strlen(line) - 6, ",20,,0");

@@ -36,20 +36,21 @@ struct cb_ratio {
   const char *figure;
   char numerator[CB_NAME], denominator[CB_NAME];
   size_t tetrahedra, iterations;
+  size_t threads, denominator_threads;
   struct cb_interval ratio;
   double paper; /* NaN: the paper has none */
 };
 /* fits.csv: time of a step = fixed + iteration * iterations. */
 struct cb_fit {
   char variant[CB_NAME];
-  size_t tetrahedra;
+  size_t tetrahedra, threads;
   struct cb_interval fixed, iteration; /* s */
 };
 /* crossings.csv: from so many iterations on, assembling is the cheaper; INFINITY
  * (an empty cell): never. */
 struct cb_crossing {
   char assembled[CB_NAME], unassembled[CB_NAME];
-  size_t tetrahedra;
+  size_t tetrahedra, threads;
   struct cb_interval iterations;
   double paper;
 };

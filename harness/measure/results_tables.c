@@ -59,8 +59,8 @@ static void clock_cell(struct cb_table *t, double seconds) {
 }
 
 static struct cb_table *samples_table(const struct cb_results *r) {
-  struct cb_table *t =
-      cb_table_create("figure,variant,tetrahedra,iterations,round,steps,step_s,cpu_s,quick");
+  struct cb_table *t = cb_table_create(
+      "figure,variant,tetrahedra,iterations,threads,round,steps,step_s,cpu_s,quick");
   for (size_t i = 0; t && i < r->sample_count; i++) {
     const struct cb_sample *sample = &r->samples[i];
     const struct cb_row *row = &r->rows[sample->row];
@@ -68,6 +68,7 @@ static struct cb_table *samples_table(const struct cb_results *r) {
     cb_table_text(t, row->variant);
     count_cell(t, row->tetrahedra);
     count_cell(t, row->iterations);
+    count_cell(t, row->threads);
     count_cell(t, sample->round);
     count_cell(t, sample->repeats);
     clock_cell(t, sample->step_s);
@@ -78,8 +79,9 @@ static struct cb_table *samples_table(const struct cb_results *r) {
 }
 
 static struct cb_table *ratios_table(const struct cb_results *r) {
-  struct cb_table *t = cb_table_create("figure,numerator,denominator,tetrahedra,iterations,"
-                                       "ratio_median,ratio_low,ratio_high,paper,quick");
+  struct cb_table *t =
+      cb_table_create("figure,numerator,denominator,tetrahedra,iterations,threads,"
+                      "denominator_threads,ratio_median,ratio_low,ratio_high,paper,quick");
   for (size_t i = 0; t && i < r->ratio_count; i++) {
     const struct cb_ratio *ratio = &r->ratios[i];
     cb_table_text(t, ratio->figure);
@@ -87,6 +89,8 @@ static struct cb_table *ratios_table(const struct cb_results *r) {
     cb_table_text(t, ratio->denominator);
     count_cell(t, ratio->tetrahedra);
     count_cell(t, ratio->iterations);
+    count_cell(t, ratio->threads);
+    count_cell(t, ratio->denominator_threads);
     interval_cells(t, ratio->ratio);
     cell(t, ratio->paper);
     cb_table_integer(t, r->quick);
@@ -95,12 +99,14 @@ static struct cb_table *ratios_table(const struct cb_results *r) {
 }
 
 static struct cb_table *fits_table(const struct cb_results *r) {
-  struct cb_table *t = cb_table_create("variant,tetrahedra,fixed_s,fixed_s_low,fixed_s_high,"
-                                       "iteration_s,iteration_s_low,iteration_s_high,quick");
+  struct cb_table *t =
+      cb_table_create("variant,tetrahedra,threads,fixed_s,fixed_s_low,fixed_s_high,"
+                      "iteration_s,iteration_s_low,iteration_s_high,quick");
   for (size_t i = 0; t && i < r->fit_count; i++) {
     const struct cb_fit *fit = &r->fits[i];
     cb_table_text(t, fit->variant);
     count_cell(t, fit->tetrahedra);
+    count_cell(t, fit->threads);
     interval_cells(t, fit->fixed);
     interval_cells(t, fit->iteration);
     cb_table_integer(t, r->quick);
@@ -109,13 +115,15 @@ static struct cb_table *fits_table(const struct cb_results *r) {
 }
 
 static struct cb_table *crossings_table(const struct cb_results *r) {
-  struct cb_table *t = cb_table_create("assembled,unassembled,tetrahedra,iterations,iterations_low,"
-                                       "iterations_high,paper,status,quick");
+  struct cb_table *t =
+      cb_table_create("assembled,unassembled,tetrahedra,threads,iterations,iterations_low,"
+                      "iterations_high,paper,status,quick");
   for (size_t i = 0; t && i < r->crossing_count; i++) {
     const struct cb_crossing *c = &r->crossings[i];
     cb_table_text(t, c->assembled);
     cb_table_text(t, c->unassembled);
     count_cell(t, c->tetrahedra);
+    count_cell(t, c->threads);
     interval_cells(t, c->iterations);
     cell(t, c->paper);
     cb_table_text(t, isinf(c->iterations.value) ? "never" : "ok");

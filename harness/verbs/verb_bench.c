@@ -152,7 +152,8 @@ static enum cb_status run(int argc, char **argv) {
   struct cb_options options;
   struct cb_bench b;
   const struct cb_bench_figure *chosen[FIGURES];
-  const unsigned mask = CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED;
+  const unsigned mask =
+      CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED | CB_OPT_THREADS;
   enum cb_status status =
       cb_options_parse(argc, argv, mask, doc, own_options, parse, &request, &options);
   if (status) return status;
