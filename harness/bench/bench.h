@@ -62,7 +62,8 @@ struct cb_bench_figure {
   void (*print)(const struct cb_results *r, FILE *stream); /* nothing if nothing was measured */
 };
 extern const struct cb_bench_figure cb_bench_figure4, cb_bench_figure7, cb_bench_convergence,
-    cb_bench_memory, cb_bench_ancestors, cb_bench_mesh;
+    cb_bench_memory, cb_bench_ancestors, cb_bench_mesh, cb_bench_roofline, cb_bench_speed,
+    cb_bench_scaling;
 
 /* An empty run into options->output, or results/latest. options is kept. CB_IO,
  * CB_MEMORY. */
@@ -130,6 +131,7 @@ struct cb_block_plan {
   double budget_s;
   /* Called with what was timed; NULL: nothing. */
   enum cb_status (*after)(struct cb_bench *b, const struct cb_block *block);
+  void *context; /* of the caller, for `after` */
 };
 struct cb_block {
   const struct cb_block_plan *plan;

@@ -6,23 +6,7 @@
 
 #include "harness/error.h"
 #include "harness/files/output.h"
-#include "harness/measure/results.h"
-
-/* Empty unless it is a finite number. */
-static void cell(struct cb_table *t, double value) {
-  if (isfinite(value))
-    cb_table_number(t, value);
-  else
-    cb_table_missing(t);
-}
-
-static void interval_cells(struct cb_table *t, struct cb_interval interval) {
-  cell(t, interval.value);
-  cell(t, interval.low);
-  cell(t, interval.high);
-}
-
-static void count_cell(struct cb_table *t, size_t count) { cb_table_integer(t, (long long)count); }
+#include "harness/measure/results_cells.h"
 
 struct cb_table *cb_results_bench_table(const struct cb_results *r) {
   struct cb_table *t =
@@ -150,9 +134,16 @@ enum cb_status cb_results_write_tables(const struct cb_results *r) {
   static const struct {
     const char *name;
     struct cb_table *(*make)(const struct cb_results *r);
-  } files[] = {{"bench.csv", cb_results_bench_table}, {"samples.csv", samples_table},
-               {"ratios.csv", ratios_table},          {"fits.csv", fits_table},
-               {"crossings.csv", crossings_table},    {"convergence.csv", convergence_table}};
+  } files[] = {{"bench.csv", cb_results_bench_table},
+               {"samples.csv", samples_table},
+               {"ratios.csv", ratios_table},
+               {"fits.csv", fits_table},
+               {"crossings.csv", crossings_table},
+               {"convergence.csv", convergence_table},
+               {"roofline.csv", cb_results_roofline_table},
+               {"speed.csv", cb_results_speed_table},
+               {"scaling.csv", cb_results_scaling_table},
+               {"frame33.csv", cb_results_frame_table}};
   enum cb_status status = CB_OK;
   for (size_t i = 0; !status && i < sizeof files / sizeof *files; i++) {
     struct cb_table *t = files[i].make(r);

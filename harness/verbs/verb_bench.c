@@ -14,16 +14,18 @@ static const char doc[] =
     "tetrahedra (7), convergence, memory, and the linear ancestors. With --mesh, measure the "
     "variants on that mesh instead.";
 
-static const struct cb_bench_figure *const figures[] = {&cb_bench_memory, &cb_bench_convergence,
-                                                        &cb_bench_figure4, &cb_bench_figure7,
-                                                        &cb_bench_ancestors};
+static const struct cb_bench_figure *const figures[] = {
+    &cb_bench_memory,    &cb_bench_convergence, &cb_bench_figure4, &cb_bench_figure7,
+    &cb_bench_ancestors, &cb_bench_speed,       &cb_bench_roofline};
 enum { FIGURES = sizeof figures / sizeof *figures };
 static const double FULL = 170, QUICK = 30; /* s; without --seconds */
 
 enum { KEY_FIGURE = 0x2000, KEY_QUICK, KEY_SECONDS };
 static const struct argp_option own_options[] = {
     {"figure", KEY_FIGURE, "NAME", 0,
-     "4, 7, convergence, memory or ancestors; may be repeated (default: all)", 0},
+     "4, 7, convergence, memory, ancestors, speed, roofline or scaling; may be repeated (default: "
+     "all)",
+     0},
     {"quick", KEY_QUICK, NULL, 0, "Few samples; the results are marked as such", 0},
     {"seconds", KEY_SECONDS, "S", 0,
      "Time for measuring all figures (default 170, with --quick 30); more makes every sample "
@@ -43,8 +45,8 @@ static enum cb_status ask(struct request *request, const char *name) {
       return CB_OK;
     }
   return cb_fail(CB_INPUT,
-                 "--figure needs 4, 7, convergence, memory or ancestors, not '%s'; the other "
-                 "figures are drawn from what verify writes",
+                 "--figure needs 4, 7, convergence, memory, ancestors, speed, roofline or scaling, "
+                 "not '%s'; the other figures are drawn from what verify writes",
                  name);
 }
 
