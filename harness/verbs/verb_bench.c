@@ -15,8 +15,8 @@ static const char doc[] =
     "variants on that mesh instead.";
 
 static const struct cb_bench_figure *const figures[] = {
-    &cb_bench_memory,    &cb_bench_convergence, &cb_bench_figure4, &cb_bench_figure7,
-    &cb_bench_ancestors, &cb_bench_speed,       &cb_bench_roofline};
+    &cb_bench_memory,    &cb_bench_convergence, &cb_bench_figure4,  &cb_bench_figure7,
+    &cb_bench_ancestors, &cb_bench_speed,       &cb_bench_roofline, &cb_bench_scaling};
 enum { FIGURES = sizeof figures / sizeof *figures };
 static const double FULL = 170, QUICK = 30; /* s; without --seconds */
 
