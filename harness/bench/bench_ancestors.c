@@ -155,4 +155,4 @@ static void print(const struct cb_results *r, FILE *stream) {
                  "Linear ancestors: surface displacement under surface forces, 3430 tetrahedra", t);
 }
 
-const struct cb_bench_figure cb_bench_ancestors = {"ancestors", 0.09, run, print};
+const struct cb_bench_figure cb_bench_ancestors = {"ancestors", 0.02, run, print};
