@@ -23,21 +23,36 @@ static double executed(void) {
   return sum;
 }
 
-enum cb_status cb_cost_flops(const struct cb_variant *v, const struct cb_bench_scene *scene,
-                             double *product, double *step) {
+static enum cb_status counted_job(const struct cb_variant *v, const struct cb_bench_scene *scene,
+                                  struct cb_job *job) {
   const struct cb_variant *q = counted(v);
-  struct cb_job job = {0};
   if (!q || !cb_counter_works())
     return cb_fail(CB_BROKEN, "operations are not counted: link with the Makefile's COUNT flags");
-  enum cb_status status = cb_job_create(q, 1, scene, &cb_bench_step, &job);
+  return cb_job_create(q, 1, scene, &cb_bench_step, job);
+}
+
+/* The numbers do not matter: no update is needed before. */
+enum cb_status cb_cost_product(const struct cb_variant *v, const struct cb_bench_scene *scene,
+                               double *flops) {
+  struct cb_job job = {0};
+  const enum cb_status status = counted_job(v, scene, &job);
   if (status) return status;
-  if (q->model->memory_numbers > 0) cb_stepper_step(job.stepper, job.x, job.v, NULL); /* warm */
-  cb_counter_reset();
-  cb_stepper_step(job.stepper, job.x, job.v, NULL);
-  *step = executed() / (double)scene->mesh.tets;
   cb_counter_reset();
   cb_operator_product(job.op, job.start_v, job.v);
-  *product = executed() / (double)scene->mesh.tets;
+  *flops = executed() / (double)scene->mesh.tets;
+  cb_job_free(&job);
+  return CB_OK;
+}
+
+enum cb_status cb_cost_step(const struct cb_variant *v, const struct cb_bench_scene *scene,
+                            double *flops) {
+  struct cb_job job = {0};
+  const enum cb_status status = counted_job(v, scene, &job);
+  if (status) return status;
+  if (v->model->memory_numbers > 0) cb_stepper_step(job.stepper, job.x, job.v, NULL); /* warm */
+  cb_counter_reset();
+  cb_stepper_step(job.stepper, job.x, job.v, NULL);
+  *flops = executed() / (double)scene->mesh.tets;
   cb_job_free(&job);
   return CB_OK;
 }

@@ -93,7 +93,9 @@ static enum cb_status run(struct cb_bench *b, double budget_s) {
   enum cb_status status = cb_bench_select(b, wanted, &entries, &count);
   if (!status && !(list = malloc((count + 1) * sizeof *list)))
     status = cb_fail_memory("the list of variants");
-  for (size_t i = 0; !status && i < SIZE_COUNT; i++)
+  /* A round of the largest size alone takes seconds. */
+  const size_t sizes = b->results.quick ? SIZE_COUNT - 1 : SIZE_COUNT;
+  for (size_t i = 0; !status && i < sizes; i++)
     status = run_size(b, &SIZES[i], count, entries, list, SIZES[i].share * budget_s);
   free(list);
   free(entries);

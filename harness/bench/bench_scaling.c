@@ -155,14 +155,17 @@ static size_t distinct(size_t count, const struct cb_entry *entries,
   return variants;
 }
 
-/* In quick runs only what is ready at once: setting up clusters of millions is not. */
+/* In quick runs only what is ready at once, which clusters of millions are not, and on
+ * as many threads as are asked for. */
 static size_t list_frames(const struct cb_bench *b, size_t variants,
                           const struct cb_variant *const *variant, struct cb_entry *list) {
   size_t kept = 0;
   const size_t count = list_entries(variants, variant, &b->threads, list);
   for (size_t i = 0; i < count; i++) {
     const enum cb_storage storage = list[i].variant->storage;
-    if (!b->results.quick || storage == CB_EBE_PAPER || storage == CB_EBE) list[kept++] = list[i];
+    const bool ready = (storage == CB_EBE_PAPER || storage == CB_EBE) &&
+                       list[i].threads == b->threads.of[b->threads.count - 1];
+    if (!b->results.quick || ready) list[kept++] = list[i];
   }
   return kept;
 }
