@@ -55,7 +55,7 @@ static void test_exact(void **state) {
         assert_int_equal(cb_search_run(&s), CB_OK);
         assert_int_equal(s.fits, answers[a]);
         assert_int_equal(s.exceeds, answers[a] + 1);
-        assert_true(s.measurements <= (powers[p] == 3 ? 5 : 24));
+        assert_true(s.measurements <= (powers[p] == 3 ? 4 : 40));
       }
 }
 

@@ -14,10 +14,10 @@
 
 static const double LIMIT = 33e-3;      /* s */
 static const double MEMORY_SHARE = 0.5; /* of the machine's, at most */
-static const double STEPS_S = 0.6;      /* s of timing for each mesh */
+static const double STEPS_S = 0.4;      /* s of timing for each mesh */
 static const double RESOLUTION = 0.02;  /* of the cells along an edge, 6 % of all */
 static const double QUICK_RESOLUTION = 0.1;
-enum { ITERATIONS = 5, ROUNDS = 15, MIN_ROUNDS = 6, LEAST = 2, MESHES = 2 };
+enum { ITERATIONS = 5, ROUNDS = 15, MIN_ROUNDS = 6, TRIALS = 3, LEAST = 2, MESHES = 2 };
 
 static const struct kind {
   const char *name;
@@ -45,9 +45,9 @@ static void run_steps(void *context, size_t repeats) {
   for (size_t i = 0; i < repeats; i++) cb_stepper_step(job->stepper, job->x, job->v, NULL);
 }
 
-/* *step := median of a job's time. */
-static enum cb_status time_job(const struct cb_bench *b, struct cb_job *job,
-                               struct cb_interval *step) {
+/* *step := median of a job's time, *fastest := the least, s. */
+static enum cb_status time_once(const struct cb_bench *b, struct cb_job *job,
+                                struct cb_interval *step, double *fastest) {
   const struct cb_subject subject = {job->name, restore, run_steps, job};
   const struct cb_timing timing = {.budget_s = STEPS_S,
                                    .min_rounds = MIN_ROUNDS,
@@ -56,7 +56,22 @@ static enum cb_status time_job(const struct cb_bench *b, struct cb_job *job,
   struct cb_samples samples = {0};
   enum cb_status status = cb_timer_run(1, &subject, &timing, &samples);
   if (!status) status = cb_median_interval(samples.rounds, samples.step_s, step, NULL);
+  *fastest = INFINITY;
+  for (size_t i = 0; !status && i < samples.rounds; i++)
+    *fastest = fmin(*fastest, samples.step_s[i]);
   cb_samples_free(&samples);
+  return status;
+}
+
+/* A median beyond the limit of which some samples are within it may be the work of
+ * another program, and would end the search far from its goal: it is taken again. */
+static enum cb_status time_job(const struct cb_bench *b, struct cb_job *job,
+                               struct cb_interval *step) {
+  double fastest = 0;
+  enum cb_status status = CB_OK;
+  *step = (struct cb_interval){INFINITY, INFINITY, INFINITY};
+  for (int i = 0; !status && i < TRIALS && step->value > LIMIT && fastest <= LIMIT; i++)
+    status = time_once(b, job, step, &fastest);
   return status;
 }
 

@@ -29,7 +29,7 @@ enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
 
 /* Shares of the budget: of a size's block, of a variant's block of a large size; the
  * rest is for the frames. */
-static const double SMALL_SHARE = 0.05, LARGE_SHARE = 0.015;
+static const double SMALL_SHARE = 0.03, LARGE_SHARE = 0.006;
 static const double MEMORY_SHARE = 0.4; /* of the machine's */
 
 static bool wanted(const struct cb_variant *v) {
@@ -272,4 +272,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   cb_frame_print(r, stream);
 }
 
-const struct cb_bench_figure cb_bench_scaling = {"scaling", 0.38, run, print};
+const struct cb_bench_figure cb_bench_scaling = {"scaling", 0.49, run, print};

@@ -243,4 +243,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   for (size_t i = 0; i < MESHES; i++) print_place(r, &PLACES[i], stream);
 }
 
-const struct cb_bench_figure cb_bench_speed = {"speed", 0.13, run, print};
+const struct cb_bench_figure cb_bench_speed = {"speed", 0.1, run, print};

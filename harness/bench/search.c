@@ -10,13 +10,13 @@ static bool ended(const struct cb_search *s) {
   return apart == 1 || (double)apart <= s->resolution * (double)s->fits;
 }
 
-/* A size that was not measured, inside what is known. Every second one halves the
+/* A size that was not measured, inside what is known. Every fourth one halves the
  * interval, in case the cost does not rise as expected. */
 static size_t next_size(const struct cb_search *s, size_t size, double cost) {
   const size_t least = s->fits ? s->fits + 1 : s->low;
   const size_t most = s->exceeds ? s->exceeds - 1 : s->high;
   double next = (double)size * cbrt(s->limit / cost);
-  if (s->fits && s->exceeds && s->measurements % 2 == 0) next = (double)(s->fits + s->exceeds) / 2;
+  if (s->fits && s->exceeds && s->measurements % 4 == 0) next = (double)(s->fits + s->exceeds) / 2;
   if (!(next > (double)least)) return least; /* a NaN as well */
   return next < (double)most ? (size_t)next : most;
 }
