@@ -26,10 +26,17 @@ draw() {
 }
 
 # Figures of an earlier run must not stand beside the data of this one.
-rm -f "$dir"/figure*.svg "$dir"/figure*.png "$dir"/convergence.svg "$dir"/convergence.png
+for kind in svg png; do
+  rm -f "$dir"/figure*."$kind"
+  for name in convergence speed roofline scaling frame33; do rm -f "$dir/$name.$kind"; done
+done
 has figure3.csv '^[^,]+,[0-9]' && draw figure3
 has fits.csv '^[^,]+,[0-9]' && draw figure4
 has bench.csv '^7,.*,[0-9.e+-]+,(ok|unstable),' && draw figure7
 has convergence.csv '^[^,]+,[0-9]' && draw convergence
+has speed.csv '^[^,]+,.*,[0-9.e+-]+,[01]$' && draw speed
+has roofline.csv '^product,' && draw roofline
+has scaling.csv '^[^,]+,[0-9]' && draw scaling
+has frame33.csv '^[^,]+,[^,]+,[0-9]' && draw frame33
 find "$dir" -maxdepth 1 \( -name "*.svg" -o -name "*.png" \) | sort
 exit $status

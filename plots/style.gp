@@ -8,6 +8,13 @@ quoted(name) = "'" . in(name) . "'" # for the shell
 if (!exists("footer_file")) footer_file = "footer.txt"
 footer = system("head -n 1 " . quoted(footer_file) . " 2>/dev/null")
 
+# The groups that figures 4 and 7 draw one plot of each: those columns of bench.csv, joined.
+group_list(figure, key) = system("awk -F'[,/]' '$1 == " . figure . " && $9 > 0 && !seen[" . key . \
+  "]++ {print " . key . "}' " . quoted("bench.csv"))
+part(group, n) = system("echo '" . group . "' | cut -d@ -f" . n)
+many_lanes(arithmetic) = strstrt(arithmetic, "x") > 0
+in_threads(threads) = threads eq "1" ? "one thread" : threads . " threads"
+
 set encoding utf8
 set datafile separator comma
 set datafile columnheaders
@@ -26,6 +33,10 @@ set style line 4 linecolor "#009e73" dashtype 5 pointtype 4 linewidth 2 pointsiz
 set style line 5 linecolor "#a0408a" dashtype "__ " pointtype 13 linewidth 2 pointsize 1.3
 set style line 6 linecolor "#707070" dashtype 6 pointtype 8 linewidth 2 pointsize 1.2
 set style line 7 linecolor "#b08000" dashtype "-..-" pointtype 6 linewidth 2 pointsize 1.2
+set style line 8 linecolor "#000000" dashtype 3 pointtype 6 linewidth 1.5 pointsize 0.9
+set style line 9 linecolor "#0072b2" dashtype 1 pointtype 12 linewidth 1.5 pointsize 1.2
+set style line 10 linecolor "#d55e00" dashtype 2 pointtype 10 linewidth 1.5 pointsize 1.2
+set style line 11 linecolor "#404040" dashtype "._" pointtype 11 linewidth 1.5 pointsize 1.2
 # What the paper says.
 set style line 20 linecolor "#b00000" dashtype "." linewidth 2.5
 

@@ -79,6 +79,28 @@ static inline struct process run_words(const char *out_path, const char *const *
   return process_run(argv, environ, out_path);
 }
 
+static inline void assert_done(const struct process *p) {
+  if (p->exit_status != 0) fail_msg("exit status %d: %s", p->exit_status, p->err);
+}
+
+static inline size_t lines(const char *text) {
+  size_t n = 0;
+  for (; *text; text++) n += *text == '\n';
+  return n;
+}
+
+/* A small block of two positively oriented tetrahedra, as TetGen writes it. */
+static inline const char *small_mesh(void) {
+  const char *path = temporary_path("small.node");
+  FILE *f = fopen(path, "w");
+  fputs("5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0.1 1 0\n4 0.2 0.1 1\n5 1 1 1\n", f);
+  fclose(f);
+  f = fopen(temporary_path("small.ele"), "w");
+  fputs("2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", f);
+  fclose(f);
+  return path;
+}
+
 /* Exit status 2 and one line on standard error that says so. */
 static inline void assert_one_sentence(const struct process *p, const char *said) {
   if (!strstr(p->err, said)) fail_msg("'%s' is not in: %s", said, p->err);

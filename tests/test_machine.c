@@ -108,6 +108,25 @@ static void test_attainable(void **state) {
   assert_true(isnan(cb_machine_attainable(&m, 1, 1, CB_L3, CB_ALL, CB_F32)));
 }
 
+/* Private caches of 32 kB and 1 MB a core, 16 MB for two cores. */
+static void test_level(void **state) {
+  (void)state;
+  const struct cb_environment e = {.cache_count = 4,
+                                   .caches = {{1, 1, "Data", 32e3},
+                                              {1, 1, "Instruction", 64e3},
+                                              {2, 1, "Unified", 1e6},
+                                              {3, 2, "Unified", 16e6}}};
+  const struct cb_environment none = {.cache_count = 0};
+  assert_int_equal(cb_machine_level(&e, 32e3, 1), CB_L1);
+  assert_int_equal(cb_machine_level(&e, 33e3, 1), CB_L2);
+  assert_int_equal(cb_machine_level(&e, 64e3, 2), CB_L1); /* two caches */
+  assert_int_equal(cb_machine_level(&e, 1.9e6, 2), CB_L2);
+  assert_int_equal(cb_machine_level(&e, 1.9e6, 1), CB_L3);
+  assert_int_equal(cb_machine_level(&e, 16e6, 2), CB_L3); /* one cache for both */
+  assert_int_equal(cb_machine_level(&e, 17e6, 2), CB_DRAM);
+  assert_int_equal(cb_machine_level(&none, 1, 1), CB_DRAM);
+}
+
 /* ---- the verb -------------------------------------------------------------- */
 
 #define RUN(...) run_words(NULL, (const char *const[]){__VA_ARGS__, NULL})
@@ -181,6 +200,7 @@ int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_multiply_add), cmocka_unit_test(test_read_and_triad),
       cmocka_unit_test(test_crew),         cmocka_unit_test(test_attainable),
-      cmocka_unit_test(test_verb),         cmocka_unit_test(test_verb_refuses)};
+      cmocka_unit_test(test_level),        cmocka_unit_test(test_verb),
+      cmocka_unit_test(test_verb_refuses)};
   return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }

@@ -16,7 +16,9 @@
 #include "harness/verbs/nearest.h"
 #include "harness/verbs/verbs.h"
 
-enum { ALL = CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED };
+enum {
+  ALL = CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED | CB_OPT_THREADS
+};
 
 static const struct argp_option own_options[] = {
     {"young", 1, "E", 0, "", 0}, {"quick", 2, NULL, 0, "", 0}, {0}};
@@ -76,6 +78,26 @@ static void test_everything_given(void **state) {
   assert_int_equal(o.glob_count, 2);
   assert_string_equal(o.globs[1], "*/*");
   assert_true(young == 1e6);
+}
+
+static void test_threads(void **state) {
+  (void)state;
+  struct cb_options o;
+  double young;
+  assert_int_equal(parse(ALL, "", &o, &young), CB_OK);
+  assert_int_equal(o.threads.count, 0);
+  assert_int_equal(parse(ALL, "--threads 4,1 --threads=64 --threads 1", &o, &young), CB_OK);
+  assert_int_equal(o.threads.count, 3); /* each once */
+  assert_int_equal(o.threads.of[0], 4);
+  assert_int_equal(o.threads.of[1], 1);
+  assert_int_equal(o.threads.of[2], 64);
+  const char *const bad[] = {"0", "65", "-1", "two", "1,", ",1", "1,,2", "1;2", "1.5", "1,65"};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    char words[64];
+    snprintf(words, sizeof words, "--threads %s", bad[i]);
+    refused(ALL, words, "--threads needs a whole number from 1 to 64");
+  }
+  refused(ALL & ~(unsigned)CB_OPT_THREADS, "--threads 1", "unknown option '--threads'");
 }
 
 static void test_words_refused(void **state) {
@@ -219,11 +241,17 @@ static void test_nearest(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_defaults),       cmocka_unit_test(test_everything_given),
-      cmocka_unit_test(test_words_refused),  cmocka_unit_test(test_mask_hides_options),
-      cmocka_unit_test(test_too_many_globs), cmocka_unit_test(test_selection),
-      cmocka_unit_test(test_globs_add_up),   cmocka_unit_test(test_empty_selection),
-      cmocka_unit_test(test_numbers),        cmocka_unit_test(test_counts),
+      cmocka_unit_test(test_defaults),
+      cmocka_unit_test(test_everything_given),
+      cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_words_refused),
+      cmocka_unit_test(test_mask_hides_options),
+      cmocka_unit_test(test_too_many_globs),
+      cmocka_unit_test(test_selection),
+      cmocka_unit_test(test_globs_add_up),
+      cmocka_unit_test(test_empty_selection),
+      cmocka_unit_test(test_numbers),
+      cmocka_unit_test(test_counts),
       cmocka_unit_test(test_nearest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

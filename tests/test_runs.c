@@ -17,31 +17,9 @@
 
 #define RUN(...) run_words(NULL, (const char *const[]){__VA_ARGS__, NULL})
 
-/* A small block of two positively oriented tetrahedra, as TetGen writes it. */
-static const char *small_mesh(void) {
-  const char *path = temporary_path("small.node");
-  FILE *f = fopen(path, "w");
-  fputs("5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0.1 1 0\n4 0.2 0.1 1\n5 1 1 1\n", f);
-  fclose(f);
-  f = fopen(temporary_path("small.ele"), "w");
-  fputs("2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", f);
-  fclose(f);
-  return path;
-}
-
-static void assert_done(const struct process *p) {
-  if (p->exit_status != 0) fail_msg("exit status %d: %s", p->exit_status, p->err);
-}
-
 static void assert_begins(const char *text, const char *start) {
   if (strncmp(text, start, strlen(start)) != 0)
     fail_msg("expected '%s', found '%.200s'", start, text);
-}
-
-static size_t lines(const char *text) {
-  size_t n = 0;
-  for (; *text; text++) n += *text == '\n';
-  return n;
 }
 
 /* How many files the directory has, and how many of them are unfinished. */

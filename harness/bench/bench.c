@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "harness/error.h"
+#include "harness/measure/crew.h"
 #include "harness/progress.h"
 #include "harness/verify/gate.h"
 
@@ -24,6 +25,11 @@ enum cb_status cb_bench_create(const struct cb_options *options, bool quick, dou
   struct cb_bench made = {.options = options, .seconds = seconds};
   made.gates = calloc(variants + 1, sizeof *made.gates);
   if (!made.gates) return cb_fail_memory("the list of variants");
+  made.paper_threads = made.threads = options->threads;
+  if (options->threads.count == 0) {
+    made.paper_threads = (struct cb_threads){1, {1}};
+    made.threads = (struct cb_threads){cb_crew_limit() > 1 ? 2 : 1, {1, 2}};
+  }
   const char *directory = options->output ? options->output : "results/latest";
   const enum cb_status status = cb_results_create(directory, quick, &made.results);
   if (status)
@@ -39,20 +45,44 @@ void cb_bench_free(struct cb_bench *b) {
   *b = (struct cb_bench){0};
 }
 
+const struct cb_arithmetic *cb_bench_lanes(size_t scalar_bytes) {
+  const struct cb_arithmetic *best = NULL;
+  for (const struct cb_arithmetic *const *a = cb_arithmetics; *a; a++)
+    if ((*a)->scalar_bytes == scalar_bytes && cb_arithmetic_runs(*a) &&
+        (!best || (*a)->lanes > best->lanes))
+      best = *a;
+  return best;
+}
+
 enum cb_status cb_bench_select(const struct cb_bench *b, bool (*wanted)(const struct cb_variant *v),
-                               const struct cb_variant ***list, size_t *count) {
+                               struct cb_entry **list, size_t *count) {
   size_t all, chosen = 0;
-  const struct cb_variant *v = cb_variants(&all), **made = malloc((all + 1) * sizeof *made);
+  const struct cb_variant *v = cb_variants(&all);
+  struct cb_entry *made = malloc((all * b->threads.count + 1) * sizeof *made);
   if (!made) return cb_fail_memory("the list of variants");
   for (; v->model; v++) {
-    const bool selected = b->options->glob_count
-                              ? cb_options_selects(b->options, v)
-                              : v->arithmetic == cb_arithmetics[0] && (!wanted || wanted(v));
-    if (selected && strcmp(v->arithmetic->name, "counted") != 0) made[chosen++] = v;
+    const bool named = b->options->glob_count > 0;
+    const bool selected = named ? cb_options_selects(b->options, v) : wanted(v);
+    if (!selected || strcmp(v->arithmetic->name, "counted") == 0) continue;
+    const struct cb_threads *threads =
+        named || v->arithmetic != cb_arithmetics[0] ? &b->threads : &b->paper_threads;
+    for (size_t i = 0; i < threads->count; i++)
+      made[chosen++] = (struct cb_entry){v, threads->of[i]};
   }
   *list = made;
   *count = chosen;
   return CB_OK;
+}
+
+size_t cb_bench_group(size_t first, size_t count, const struct cb_entry *entries,
+                      bool (*alike)(const struct cb_entry *e, const struct cb_entry *f),
+                      struct cb_entry *list) {
+  size_t chosen = 0;
+  for (size_t i = 0; i < first; i++)
+    if (alike(&entries[i], &entries[first])) return 0;
+  for (size_t i = first; i < count; i++)
+    if (alike(&entries[i], &entries[first])) list[chosen++] = entries[i];
+  return chosen;
 }
 
 enum cb_status cb_bench_gate(struct cb_bench *b, const struct cb_variant *v, const char **reason) {

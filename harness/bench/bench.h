@@ -48,6 +48,9 @@ struct cb_bench {
   const struct cb_options *options;
   double seconds; /* of all figures */
   double done_s;  /* of the time planned for the figures that are asked for */
+  /* As asked for; else 1 and, where there are two processors, 2; and 1 alone for the
+   * paper's own arithmetic. */
+  struct cb_threads threads, paper_threads;
   struct cb_results results;
   struct cb_gate_result *gates; /* [variants]: what has been verified so far */
 };
@@ -59,7 +62,8 @@ struct cb_bench_figure {
   void (*print)(const struct cb_results *r, FILE *stream); /* nothing if nothing was measured */
 };
 extern const struct cb_bench_figure cb_bench_figure4, cb_bench_figure7, cb_bench_convergence,
-    cb_bench_memory, cb_bench_ancestors, cb_bench_mesh;
+    cb_bench_memory, cb_bench_ancestors, cb_bench_mesh, cb_bench_roofline, cb_bench_speed,
+    cb_bench_scaling;
 
 /* An empty run into options->output, or results/latest. options is kept. CB_IO,
  * CB_MEMORY. */
@@ -67,11 +71,24 @@ enum cb_status cb_bench_create(const struct cb_options *options, bool quick, dou
                                struct cb_bench *b);
 void cb_bench_free(struct cb_bench *b);
 
-/* *list := the variants to be timed, *count of them, to be freed: those that
- * --variant selects, or without it those in double precision that are `wanted`
- * (NULL: all). `counted` is never timed. CB_MEMORY. */
+/* What is timed. */
+struct cb_entry {
+  const struct cb_variant *variant;
+  size_t threads;
+};
+/* The arithmetic with the most lanes of scalars of that size that runs here. */
+const struct cb_arithmetic *cb_bench_lanes(size_t scalar_bytes);
+/* *list := what is to be timed, *count of them, to be freed: the variants that
+ * --variant selects, or without it those that are `wanted`, each with every number of
+ * threads. `counted` is never timed. CB_MEMORY. */
 enum cb_status cb_bench_select(const struct cb_bench *b, bool (*wanted)(const struct cb_variant *v),
-                               const struct cb_variant ***list, size_t *count);
+                               struct cb_entry **list, size_t *count);
+/* The entries that are alike to entries[first], itself included, into list[count];
+ * returns how many: none if an earlier one is alike, so that every group comes up
+ * once. */
+size_t cb_bench_group(size_t first, size_t count, const struct cb_entry *entries,
+                      bool (*alike)(const struct cb_entry *e, const struct cb_entry *f),
+                      struct cb_entry *list);
 /* *reason := why the variant may not be timed, "" if it may; valid as long as b.
  * Verifies each variant once. CB_MEMORY, CB_INTERRUPTED. */
 enum cb_status cb_bench_gate(struct cb_bench *b, const struct cb_variant *v, const char **reason);
@@ -85,6 +102,7 @@ enum cb_status cb_bench_explain(enum cb_status status, const char *what);
 /* A variant on the scene, ready to step. */
 struct cb_job {
   const struct cb_variant *variant;
+  size_t threads;
   char name[CB_NAME];
   struct cb_operator *op;
   struct cb_stepper *stepper;
@@ -94,7 +112,8 @@ struct cb_job {
   bool lost; /* a position was not finite after the steps: no time counts */
 };
 /* CB_MEMORY. */
-enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_scene *scene,
+enum cb_status cb_job_create(const struct cb_variant *v, size_t threads,
+                             const struct cb_bench_scene *scene,
                              const struct cb_step_parameters *step, struct cb_job *job);
 void cb_job_free(struct cb_job *job); /* zeroed is allowed */
 
@@ -105,28 +124,32 @@ struct cb_block;
 struct cb_block_plan {
   const char *figure; /* string constant */
   const struct cb_bench_scene *scene;
-  size_t variant_count, count_count;
-  const struct cb_variant *const *variants;
+  size_t entry_count, count_count;
+  const struct cb_entry *entries;
   const size_t *iterations; /* [count_count] */
   bool parts;               /* time update, solve and product as well; for one count */
   double budget_s;
   /* Called with what was timed; NULL: nothing. */
   enum cb_status (*after)(struct cb_bench *b, const struct cb_block *block);
+  void *context; /* of the caller, for `after` */
 };
 struct cb_block {
   const struct cb_block_plan *plan;
-  size_t job_count; /* of the variants that passed the gate */
+  size_t job_count; /* of the entries whose variants passed the gate */
   struct cb_job *jobs;
   struct cb_samples samples; /* of subject job * count_count + count */
 };
-/* Time the variants that pass the gate for about budget_s, give every variant
- * its rows, and write the results. */
+/* Time the entries whose variants pass the gate for about budget_s, give every
+ * entry its rows, and write the results. */
 enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan);
 /* The samples of one job at one iteration count, [samples.rounds], s. */
 const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t count);
+/* Add the ratio of two jobs' times; paper: what the paper says, or NaN. */
+enum cb_status cb_block_ratio(struct cb_bench *b, const struct cb_block *block, size_t job,
+                              size_t base, size_t count, double paper);
 /* Add the ratios of all jobs that the rule pairs: each frame by QR with the same
  * strain-displacement policy, each other policy of QR by qr-updated; same
- * storage and arithmetic. */
+ * storage, arithmetic and threads. */
 enum cb_status cb_block_ratios(struct cb_bench *b, const struct cb_block *block);
 
 /* ---- text ------------------------------------------------------------------- */
@@ -140,8 +163,9 @@ void cb_bench_step_cell(struct cb_table *t, const struct cb_row *row, double sca
 void cb_bench_number_cell(struct cb_table *t, double value);
 /* A cell "1.30 [1.28, 1.33]"; "never" stands for infinity, "-" for NaN. */
 void cb_bench_interval_cell(struct cb_table *t, struct cb_interval interval);
-/* The row of that figure, variant, size and iteration count, or NULL. */
-const struct cb_row *cb_bench_row(const struct cb_results *r, const char *figure,
-                                  const char *variant, size_t tetrahedra, size_t iterations);
+/* The row of the same figure, variant and threads, of that size and iteration
+ * count, or NULL. */
+const struct cb_row *cb_bench_row(const struct cb_results *r, const struct cb_row *like,
+                                  size_t tetrahedra, size_t iterations);
 
 #endif

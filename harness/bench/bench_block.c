@@ -16,21 +16,21 @@ static const double MIN_EPOCH = 2e-3; /* s: the clock's resolution is then 1e-4 
 /* Share of the budget for whole steps; the parts get what is left. */
 static const double STEP_SHARE = 0.8;
 
-static struct cb_row row_of(const struct cb_block *block, const struct cb_variant *v,
-                            size_t count) {
+static struct cb_row row_of(const struct cb_block *block, struct cb_entry entry, size_t count) {
   char name[CB_NAME];
-  cb_variant_name(v, name);
+  cb_variant_name(entry.variant, name);
   struct cb_row row = cb_row_unmeasured(block->plan->figure, name, &block->plan->scene->mesh);
   row.iterations = block->plan->iterations[count];
+  row.threads = entry.threads;
   return row;
 }
 
 /* Rows without a time, and why. */
 static enum cb_status refuse(struct cb_bench *b, const struct cb_block *block,
-                             const struct cb_variant *v, const char *reason) {
+                             struct cb_entry entry, const char *reason) {
   enum cb_status status = CB_OK;
   for (size_t c = 0; !status && c < block->plan->count_count; c++) {
-    struct cb_row row = row_of(block, v, c);
+    struct cb_row row = row_of(block, entry, c);
     snprintf(row.status, sizeof row.status, "failed: %s", reason);
     status = cb_results_add_row(&b->results, &row);
   }
@@ -44,14 +44,14 @@ static void free_block(struct cb_block *block) {
 }
 
 /* A job, or a row that says why not. */
-static enum cb_status admit(struct cb_bench *b, struct cb_block *block,
-                            const struct cb_variant *v) {
+static enum cb_status admit(struct cb_bench *b, struct cb_block *block, struct cb_entry entry) {
   const char *reason;
-  enum cb_status status = cb_bench_gate(b, v, &reason);
+  enum cb_status status = cb_bench_gate(b, entry.variant, &reason);
   if (status) return status;
   if (cb_interrupted()) return cb_fail(CB_INTERRUPTED, "interrupted before a measurement");
-  if (reason[0]) return refuse(b, block, v, reason);
-  status = cb_job_create(v, block->plan->scene, &cb_bench_step, &block->jobs[block->job_count]);
+  if (reason[0]) return refuse(b, block, entry, reason);
+  status = cb_job_create(entry.variant, entry.threads, block->plan->scene, &cb_bench_step,
+                         &block->jobs[block->job_count]);
   if (!status) block->job_count++;
   return status;
 }
@@ -198,7 +198,8 @@ static enum cb_status add_row(struct cb_bench *b, const struct cb_block *block, 
                               const struct cb_samples *parts) {
   const size_t j = i / block->plan->count_count;
   const struct cb_job *job = &block->jobs[j];
-  struct cb_row row = row_of(block, job->variant, i % block->plan->count_count);
+  struct cb_row row =
+      row_of(block, (struct cb_entry){job->variant, job->threads}, i % block->plan->count_count);
   row.bytes_per_tetrahedron = (double)cb_operator_bytes(job->op) / (double)row.tetrahedra;
   row.setup_s = job->setup_s;
   if (job->lost) {
@@ -234,10 +235,10 @@ const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t c
 
 enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan) {
   struct cb_block block = {.plan = plan};
-  block.jobs = calloc(plan->variant_count + 1, sizeof *block.jobs);
+  block.jobs = calloc(plan->entry_count + 1, sizeof *block.jobs);
   enum cb_status status = block.jobs ? CB_OK : cb_fail_memory("the list of variants");
-  for (size_t i = 0; !status && i < plan->variant_count; i++)
-    status = admit(b, &block, plan->variants[i]);
+  for (size_t i = 0; !status && i < plan->entry_count; i++)
+    status = admit(b, &block, plan->entries[i]);
   if (!status && block.job_count > 0) status = measure(b, &block);
   if (!status && block.job_count > 0 && plan->after) status = plan->after(b, &block);
   free_block(&block);

@@ -30,45 +30,56 @@ static bool ends_with(const char *text, const char *end) {
   return length >= tail && strcmp(text + length - tail, end) == 0;
 }
 
+static bool is_one_of(const char *name, const char *const *list) {
+  while (*list && strcmp(name, *list) != 0) list++;
+  return *list != NULL;
+}
+
 /* Models with a frame per element, in the paper's storage and in the one whose
  * product needs no frame; in the latter also those without such a frame, as a
  * measure. Left out: two polar ones that are there to be wrong and are as dear
  * as their right counterparts, and the current volume, which blows up. */
-static bool wanted(const struct cb_variant *v) {
+static bool wanted_of_paper(const struct cb_variant *v) {
   const char *name = v->model->name;
   if (v->storage != CB_EBE_PAPER && v->storage != CB_EBE) return false;
   return strncmp(name, "polar-edges", 11) != 0 && strncmp(name, "polar-reflected", 15) != 0 &&
          !ends_with(name, "-updated-volume");
 }
 
-/* The variants of one storage, in the front of `list`; returns how many. */
-static size_t of_storage(enum cb_storage storage, size_t count, const struct cb_variant **variants,
-                         const struct cb_variant **list) {
-  size_t chosen = 0;
-  for (size_t i = 0; i < count; i++)
-    if (variants[i]->storage == storage) list[chosen++] = variants[i];
-  return chosen;
+/* The same question asked of the fastest kernels: fewer frames, in clusters. */
+static bool wanted(const struct cb_variant *v) {
+  static const char *const frames[] = {
+      "qr-precomputed",       "qr-updated",           "qr-exact",
+      "polar-higham-updated", "polar-closed-updated", "polar-closed-precomputed",
+      "polar-exact",          "svd-updated",          NULL};
+  if (v->arithmetic == cb_arithmetics[0]) return wanted_of_paper(v);
+  return v->arithmetic == cb_bench_lanes(sizeof(float)) && v->storage == CB_EBE_CLUSTER &&
+         is_one_of(v->model->name, frames);
 }
 
-/* One block per storage, so that no more than its share is in memory. */
+static bool same_group(const struct cb_entry *e, const struct cb_entry *f) {
+  return e->variant->storage == f->variant->storage &&
+         e->variant->arithmetic == f->variant->arithmetic && e->threads == f->threads;
+}
+
+/* One block per storage, arithmetic and number of threads, so that no more than its
+ * share is in memory, and one thread is not kept on a processor for two. */
 static enum cb_status run_size(struct cb_bench *b, const struct size *size, size_t count,
-                               const struct cb_variant **variants, const struct cb_variant **list,
+                               const struct cb_entry *entries, struct cb_entry *list,
                                double budget_s) {
   struct cb_bench_scene scene;
-  size_t storages = 0;
-  for (int s = 0; s < CB_STORAGES; s++) storages += of_storage(s, count, variants, list) > 0;
   enum cb_status status = cb_bench_scene_grid(size->cells, b->options->seed, &scene);
   if (status) return status;
-  for (int s = 0; !status && s < CB_STORAGES; s++) {
-    const size_t chosen = of_storage(s, count, variants, list);
+  for (size_t i = 0; !status && i < count; i++) {
+    const size_t chosen = cb_bench_group(i, count, entries, same_group, list);
     const struct cb_block_plan plan = {.figure = "7",
                                        .scene = &scene,
-                                       .variant_count = chosen,
-                                       .variants = list,
+                                       .entry_count = chosen,
+                                       .entries = list,
                                        .count_count = 1,
                                        .iterations = size->iterations,
                                        .parts = size == &SIZES[PAPER],
-                                       .budget_s = budget_s / (double)storages,
+                                       .budget_s = budget_s * (double)chosen / (double)count,
                                        .after = cb_block_ratios};
     if (chosen > 0) status = cb_bench_block(b, &plan);
   }
@@ -77,15 +88,17 @@ static enum cb_status run_size(struct cb_bench *b, const struct size *size, size
 }
 
 static enum cb_status run(struct cb_bench *b, double budget_s) {
-  const struct cb_variant **variants = NULL, **list = NULL;
+  struct cb_entry *entries = NULL, *list = NULL;
   size_t count = 0;
-  enum cb_status status = cb_bench_select(b, wanted, &variants, &count);
+  enum cb_status status = cb_bench_select(b, wanted, &entries, &count);
   if (!status && !(list = malloc((count + 1) * sizeof *list)))
     status = cb_fail_memory("the list of variants");
-  for (size_t i = 0; !status && i < SIZE_COUNT; i++)
-    status = run_size(b, &SIZES[i], count, variants, list, SIZES[i].share * budget_s);
+  /* A round of the largest size alone takes seconds. */
+  const size_t sizes = b->results.quick ? SIZE_COUNT - 1 : SIZE_COUNT;
+  for (size_t i = 0; !status && i < sizes; i++)
+    status = run_size(b, &SIZES[i], count, entries, list, SIZES[i].share * budget_s);
   free(list);
-  free(variants);
+  free(entries);
   return status;
 }
 
@@ -99,43 +112,51 @@ static void model_cell(struct cb_table *t, const char *variant) {
   cb_table_text(t, model);
 }
 
-/* Everything behind the model: "ebe-paper/f64". */
+/* Everything behind the model: "/ebe-paper/f64". */
 static const char *storage_of(const char *variant) { return variant + strcspn(variant, "/"); }
 
-static void print_steps(const struct cb_results *r, const char *storage, FILE *stream) {
+/* Rows and ratios of one table: the same storage, arithmetic and threads. */
+static bool in_table(const struct cb_row *row, const struct cb_row *first) {
+  return strcmp(row->figure, "7") == 0 && row->threads == first->threads &&
+         strcmp(storage_of(row->variant), storage_of(first->variant)) == 0;
+}
+
+static void table_print(FILE *stream, const char *what, const struct cb_row *first,
+                        struct cb_table *t) {
+  char title[256];
+  snprintf(title, sizeof title, "%s, %s, %zu thread%s", what, storage_of(first->variant) + 1,
+           first->threads, first->threads > 1 ? "s" : "");
+  cb_bench_print(stream, title, t);
+}
+
+static void print_steps(const struct cb_results *r, const struct cb_row *first, FILE *stream) {
   struct cb_table *t = cb_table_create("model,500,3430,10000,33750,106480");
   for (size_t i = 0; t && i < r->row_count; i++) {
     const struct cb_row *row = &r->rows[i];
-    if (strcmp(row->figure, "7") != 0 || strcmp(storage_of(row->variant), storage) != 0 ||
-        row->iterations != FEW || row->tetrahedra != tetrahedra(&SIZES[0]))
+    if (!in_table(row, first) || row->iterations != FEW || row->tetrahedra != tetrahedra(&SIZES[0]))
       continue;
     model_cell(t, row->variant);
     for (size_t s = 0; s < SIZE_COUNT; s++)
       if (SIZES[s].iterations == FIVE)
-        cb_bench_step_cell(t, cb_bench_row(r, "7", row->variant, tetrahedra(&SIZES[s]), FEW), 1e3);
+        cb_bench_step_cell(t, cb_bench_row(r, row, tetrahedra(&SIZES[s]), FEW), 1e3);
   }
-  char title[160];
-  snprintf(title, sizeof title,
-           "Figure 7, %s: time of one step (ms) against the number of tetrahedra, %d iterations",
-           storage + 1, FEW);
-  cb_bench_print(stream, title, t);
+  table_print(stream,
+              "Figure 7: time of one step (ms) against the number of tetrahedra, 5 iterations",
+              first, t);
 }
 
-static void print_parts(const struct cb_results *r, const char *storage, FILE *stream) {
+static void print_parts(const struct cb_results *r, const struct cb_row *first, FILE *stream) {
   struct cb_table *t = cb_table_create("model,update_us,solve_us,one_product_us,setup_us");
   for (size_t i = 0; t && i < r->row_count; i++) {
     const struct cb_row *row = &r->rows[i];
-    if (strcmp(row->figure, "7") != 0 || strcmp(storage_of(row->variant), storage) != 0 ||
-        row->iterations != FEW || row->tetrahedra != tetrahedra(&SIZES[PAPER]))
+    if (!in_table(row, first) || row->iterations != FEW ||
+        row->tetrahedra != tetrahedra(&SIZES[PAPER]))
       continue;
     model_cell(t, row->variant);
     const double parts[] = {row->update_s, row->solve_s, row->product_s, row->setup_s};
     for (size_t k = 0; k < 4; k++) cb_bench_number_cell(t, 1e6 * parts[k]);
   }
-  char title[160];
-  snprintf(title, sizeof title, "The parts of a step, %s, %zu tetrahedra, %d iterations",
-           storage + 1, tetrahedra(&SIZES[PAPER]), FEW);
-  cb_bench_print(stream, title, t);
+  table_print(stream, "The parts of a step, 3430 tetrahedra, 5 iterations", first, t);
 }
 
 static struct cb_interval find_ratio(const struct cb_results *r, const struct cb_ratio *like,
@@ -143,20 +164,21 @@ static struct cb_interval find_ratio(const struct cb_results *r, const struct cb
   for (size_t i = 0; i < r->ratio_count; i++) {
     const struct cb_ratio *c = &r->ratios[i];
     if (strcmp(c->figure, "7") == 0 && c->tetrahedra == tets && c->iterations == iterations &&
-        strcmp(c->numerator, like->numerator) == 0 &&
+        c->threads == like->threads && strcmp(c->numerator, like->numerator) == 0 &&
         strcmp(c->denominator, like->denominator) == 0)
       return c->ratio;
   }
   return (struct cb_interval){NAN, NAN, NAN};
 }
 
-static void print_ratios(const struct cb_results *r, const char *storage, FILE *stream) {
+static void print_ratios(const struct cb_results *r, const struct cb_row *first, FILE *stream) {
   struct cb_table *t =
       cb_table_create("time_of,by_that_of,3430_tets,106480_tets,3430_tets_50_iterations,paper");
   const size_t paper = tetrahedra(&SIZES[PAPER]), large = tetrahedra(&SIZES[SIZE_COUNT - 1]);
   for (size_t i = 0; t && i < r->ratio_count; i++) {
     const struct cb_ratio *ratio = &r->ratios[i];
-    if (strcmp(ratio->figure, "7") != 0 || strcmp(storage_of(ratio->numerator), storage) != 0 ||
+    if (strcmp(ratio->figure, "7") != 0 || ratio->threads != first->threads ||
+        strcmp(storage_of(ratio->numerator), storage_of(first->variant)) != 0 ||
         ratio->tetrahedra != paper || ratio->iterations != FEW)
       continue;
     model_cell(t, ratio->numerator);
@@ -166,27 +188,23 @@ static void print_ratios(const struct cb_results *r, const char *storage, FILE *
     cb_bench_interval_cell(t, find_ratio(r, ratio, paper, MANY));
     cb_bench_number_cell(t, ratio->paper);
   }
-  char title[160];
-  snprintf(title, sizeof title, "Ratios of the times of a step, %s [95 %% interval]", storage + 1);
-  cb_bench_print(stream, title, t);
+  table_print(stream, "Ratios of the times of a step [95 % interval]", first, t);
 }
 
 static bool seen_before(const struct cb_results *r, size_t i) {
   for (size_t k = 0; k < i; k++)
-    if (strcmp(r->rows[k].figure, "7") == 0 &&
-        strcmp(storage_of(r->rows[k].variant), storage_of(r->rows[i].variant)) == 0)
-      return true;
+    if (in_table(&r->rows[k], &r->rows[i])) return true;
   return false;
 }
 
 static void print(const struct cb_results *r, FILE *stream) {
   for (size_t i = 0; i < r->row_count; i++) {
-    if (strcmp(r->rows[i].figure, "7") != 0 || seen_before(r, i)) continue;
-    const char *storage = storage_of(r->rows[i].variant);
-    print_steps(r, storage, stream);
-    print_parts(r, storage, stream);
-    print_ratios(r, storage, stream);
+    const struct cb_row *first = &r->rows[i];
+    if (strcmp(first->figure, "7") != 0 || seen_before(r, i)) continue;
+    print_steps(r, first, stream);
+    print_parts(r, first, stream);
+    print_ratios(r, first, stream);
   }
 }
 
-const struct cb_bench_figure cb_bench_figure7 = {"7", 0.6, run, print};
+const struct cb_bench_figure cb_bench_figure7 = {"7", 0.22, run, print};

@@ -31,13 +31,14 @@ enum cb_status cb_bench_explain(enum cb_status status, const char *what) {
   }
 }
 
-enum cb_status cb_job_create(const struct cb_variant *v, const struct cb_bench_scene *scene,
+enum cb_status cb_job_create(const struct cb_variant *v, size_t threads,
+                             const struct cb_bench_scene *scene,
                              const struct cb_step_parameters *step, struct cb_job *job) {
-  struct cb_job made = {.variant = v};
+  struct cb_job made = {.variant = v, .threads = threads};
   cb_variant_name(v, made.name);
   const double begin = cb_timer_now();
   enum cb_status status =
-      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(step), 1, &made.op);
+      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(step), threads, &made.op);
   if (!status) status = cb_stepper_create(made.op, step, scene->mass, scene->fixed, &made.stepper);
   made.setup_s = cb_timer_now() - begin;
   status = cb_bench_explain(status, made.name);

@@ -8,15 +8,23 @@
 
 #include "harness/bench/bench.h"
 
+/* All of f64, and of the widest lanes of both scalars. */
+static bool wanted(const struct cb_variant *v) {
+  const struct cb_arithmetic *a = v->arithmetic;
+  return a == cb_arithmetics[0] || a == cb_bench_lanes(sizeof(double)) ||
+         a == cb_bench_lanes(sizeof(float));
+}
+
 static enum cb_status add_row(struct cb_bench *b, const struct cb_bench_scene *scene,
-                              const struct cb_variant *v) {
+                              struct cb_entry entry) {
   struct cb_operator *op;
-  enum cb_status status =
-      cb_operator_create(v, &scene->mesh, &scene->material, cb_step_scale(&cb_bench_step), 1, &op);
+  enum cb_status status = cb_operator_create(entry.variant, &scene->mesh, &scene->material,
+                                             cb_step_scale(&cb_bench_step), entry.threads, &op);
   char name[CB_NAME];
-  cb_variant_name(v, name);
+  cb_variant_name(entry.variant, name);
   if (status) return cb_bench_explain(status, name);
   struct cb_row row = cb_row_unmeasured("memory", name, &scene->mesh);
+  row.threads = entry.threads;
   row.bytes_per_tetrahedron = (double)cb_operator_bytes(op) / (double)scene->mesh.tets;
   snprintf(row.status, sizeof row.status, "ok");
   cb_operator_free(op);
@@ -25,15 +33,15 @@ static enum cb_status add_row(struct cb_bench *b, const struct cb_bench_scene *s
 
 static enum cb_status run(struct cb_bench *b, double budget_s) {
   (void)budget_s; /* nothing is timed */
-  const struct cb_variant **variants = NULL;
+  struct cb_entry *entries = NULL;
   size_t count = 0;
   struct cb_bench_scene scene = {0};
-  enum cb_status status = cb_bench_select(b, NULL, &variants, &count);
+  enum cb_status status = cb_bench_select(b, wanted, &entries, &count);
   if (!status) status = cb_bench_scene_grid(cb_bench_paper_cells, b->options->seed, &scene);
-  for (size_t i = 0; !status && i < count; i++) status = add_row(b, &scene, variants[i]);
+  for (size_t i = 0; !status && i < count; i++) status = add_row(b, &scene, entries[i]);
   if (!status) status = cb_results_write(&b->results);
   cb_bench_scene_free(&scene);
-  free(variants);
+  free(entries);
   return status;
 }
 

@@ -32,31 +32,38 @@ static bool is_base(const struct cb_variant *v, const struct cb_variant *base) {
   return ends_with_policy(v->model->name, policy);
 }
 
-static enum cb_status add_ratio(struct cb_bench *b, const struct cb_block *block, size_t v,
-                                size_t base, size_t count) {
-  const struct cb_job *upper = &block->jobs[v], *lower = &block->jobs[base];
-  const bool in_paper = starts_with(upper->variant->model->name, "polar-") &&
-                        strcmp(lower->variant->model->name, "qr-updated") == 0;
+enum cb_status cb_block_ratio(struct cb_bench *b, const struct cb_block *block, size_t job,
+                              size_t base, size_t count, double paper) {
+  const struct cb_job *upper = &block->jobs[job], *lower = &block->jobs[base];
   struct cb_ratio ratio = {.figure = block->plan->figure,
                            .tetrahedra = block->plan->scene->mesh.tets,
                            .iterations = block->plan->iterations[count],
-                           .paper = in_paper ? PAPER_POLAR_TO_QR : NAN};
+                           .threads = upper->threads,
+                           .denominator_threads = lower->threads,
+                           .paper = paper};
   snprintf(ratio.numerator, CB_NAME, "%s", upper->name);
   snprintf(ratio.denominator, CB_NAME, "%s", lower->name);
   const enum cb_status status =
-      cb_ratio_interval(block->samples.rounds, cb_block_step_s(block, v, count),
+      cb_ratio_interval(block->samples.rounds, cb_block_step_s(block, job, count),
                         cb_block_step_s(block, base, count), &ratio.ratio);
   return status ? status : cb_results_add_ratio(&b->results, &ratio);
+}
+
+static double paper_ratio(const struct cb_job *job, const struct cb_job *base) {
+  const bool in_paper = starts_with(job->variant->model->name, "polar-") &&
+                        strcmp(base->variant->model->name, "qr-updated") == 0;
+  return in_paper ? PAPER_POLAR_TO_QR : NAN;
 }
 
 enum cb_status cb_block_ratios(struct cb_bench *b, const struct cb_block *block) {
   enum cb_status status = CB_OK;
   for (size_t v = 0; v < block->job_count; v++)
     for (size_t base = 0; base < block->job_count; base++) {
-      if (block->jobs[v].lost || block->jobs[base].lost) continue;
-      if (!is_base(block->jobs[v].variant, block->jobs[base].variant)) continue;
+      const struct cb_job *upper = &block->jobs[v], *lower = &block->jobs[base];
+      if (upper->lost || lower->lost || upper->threads != lower->threads) continue;
+      if (!is_base(upper->variant, lower->variant)) continue;
       for (size_t c = 0; !status && c < block->plan->count_count; c++)
-        status = add_ratio(b, block, v, base, c);
+        status = cb_block_ratio(b, block, v, base, c, paper_ratio(upper, lower));
     }
   return status;
 }

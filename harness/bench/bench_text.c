@@ -54,12 +54,13 @@ void cb_bench_interval_cell(struct cb_table *t, struct cb_interval interval) {
   cb_table_text(t, text);
 }
 
-const struct cb_row *cb_bench_row(const struct cb_results *r, const char *figure,
-                                  const char *variant, size_t tetrahedra, size_t iterations) {
+const struct cb_row *cb_bench_row(const struct cb_results *r, const struct cb_row *like,
+                                  size_t tetrahedra, size_t iterations) {
   for (size_t i = 0; i < r->row_count; i++) {
     const struct cb_row *row = &r->rows[i];
-    if (strcmp(row->figure, figure) == 0 && strcmp(row->variant, variant) == 0 &&
-        row->tetrahedra == tetrahedra && row->iterations == iterations)
+    if (strcmp(row->figure, like->figure) == 0 && strcmp(row->variant, like->variant) == 0 &&
+        row->threads == like->threads && row->tetrahedra == tetrahedra &&
+        row->iterations == iterations)
       return row;
   }
   return NULL;

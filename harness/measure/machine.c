@@ -11,7 +11,6 @@
 #include "harness/error.h"
 #include "harness/measure/crew.h"
 #include "harness/measure/environment.h"
-#include "harness/progress.h"
 
 const char *const cb_level_name[CB_LEVELS] = {"L1", "L2", "L3", "DRAM"};
 const char *const cb_scalar_name[CB_SCALARS] = {"f32", "f64"};
@@ -40,6 +39,8 @@ struct session {
   struct cb_environment environment;
   const struct cb_loops *widest;
   size_t done, total; /* measurements */
+  void (*progress)(void *context, double share, const char *what);
+  void *context;
 };
 
 /* ---- the work of one thread ------------------------------------------------ */
@@ -73,12 +74,16 @@ static void run_fill(void *context, size_t thread, size_t repeats) {
 
 /* ---- measurements ---------------------------------------------------------- */
 
+static void show(const struct session *s, const char *what) {
+  if (s->progress) s->progress(s->context, (double)s->done / (double)s->total, what);
+}
+
 /* *rate := amount per second, amount being what one repeat of the work is. */
 static enum cb_status measure(struct session *s, enum cb_crew crew, cb_crew_work *work,
                               struct job *job, double amount, const char *what,
                               struct cb_interval *rate) {
   double samples[EPOCHS], scatter;
-  cb_progress((double)s->done, what);
+  show(s, what);
   enum cb_status status =
       cb_crew_time(s->m.threads[crew], work, job, EPOCH_S, job->epochs, samples);
   if (status) return status;
@@ -122,7 +127,7 @@ static enum cb_status measure_levels(struct session *s, enum cb_crew crew) {
                     .numbers = aligned_alloc(PAGE, (bytes + PAGE - 1) / PAGE * PAGE)};
   if (!job.numbers) return cb_fail_memory("the bandwidth of the memory");
   madvise(job.numbers, bytes, MADV_HUGEPAGE); /* where refused: with small pages */
-  cb_progress((double)s->done, "filling memory");
+  show(s, "filling memory");
   enum cb_status status = cb_crew_time(s->m.threads[crew], run_fill, &job, 0, 0, NULL);
   for (enum cb_level level = 0; level < CB_LEVELS && !status; level++)
     if (s->m.bytes[level][crew] > 0) status = measure_level(s, crew, level, &job);
@@ -209,11 +214,11 @@ static void summarize(struct cb_machine *m) {
   }
 }
 
-enum cb_status cb_machine_measure(struct cb_machine *m) {
-  struct session s = {0};
+enum cb_status cb_machine_measure(void (*progress)(void *context, double share, const char *what),
+                                  void *context, struct cb_machine *m) {
+  struct session s = {.progress = progress, .context = context};
   enum cb_status status = CB_OK;
   choose(&s);
-  cb_progress_begin("machine", (double)s.total);
   for (enum cb_crew crew = 0; crew < CB_CREWS && !status; crew++) {
     if (crew == CB_ALL && s.m.threads[crew] == 1) {
       copy_crew(&s.m);
@@ -222,12 +227,17 @@ enum cb_status cb_machine_measure(struct cb_machine *m) {
     status = measure_peaks(&s, crew);
     if (!status) status = measure_levels(&s, crew);
   }
-  cb_progress_end();
   if (status) return status;
   s.m.measurements = s.total;
   summarize(&s.m);
   *m = s.m;
   return CB_OK;
+}
+
+enum cb_level cb_machine_level(const struct cb_environment *e, double bytes, size_t threads) {
+  for (enum cb_level level = CB_L1; level < CB_DRAM; level++)
+    if (bytes <= (double)threads * cache_share(e, level + 1, threads)) return level;
+  return CB_DRAM;
 }
 
 double cb_machine_attainable(const struct cb_machine *m, double flops, double bytes,

@@ -6,6 +6,8 @@
 #ifndef CB_MACHINE_H
 #define CB_MACHINE_H
 
+#include "harness/files/table.h"
+#include "harness/measure/environment.h"
 #include "harness/measure/loops.h"
 #include "harness/measure/statistics.h"
 
@@ -30,10 +32,18 @@ struct cb_machine {
   double bandwidth[CB_LEVELS][CB_CREWS];   /* B/s, the better of read and triad */
 };
 
-/* Measure, in about 5 s, with a progress bar. DRAM is measured on up to 512 MB, a
- * quarter of the memory at most; where the last cache is larger than that, its
+/* Measure, in about 5 s; progress (may be NULL) is told the share that is done. DRAM is measured on
+ * up to 512 MB, a quarter of the memory at most; where the last cache is larger than that, its
  * figure is partly that cache's. CB_MEMORY, CB_INTERRUPTED; recorded. */
-enum cb_status cb_machine_measure(struct cb_machine *m);
+enum cb_status cb_machine_measure(void (*progress)(void *context, double share, const char *what),
+                                  void *context, struct cb_machine *m);
+/* Every rate as a row, Gflop/s and GB/s, with these columns. NULL: out of memory. */
+#define CB_MACHINE_COLUMNS "quantity,instruction_set,threads,value,low,high,unit,working_set_bytes"
+struct cb_table *cb_machine_table(const struct cb_machine *m);
+
+/* Where a working set of that many bytes, shared out among so many threads on cores
+ * of their own, is kept: the smallest cache that holds it. */
+enum cb_level cb_machine_level(const struct cb_environment *e, double bytes, size_t threads);
 
 /* flop/s that work of so many flops and bytes, the bytes coming from that level,
  * can reach: the peak or bandwidth times flops / bytes, whichever is less. */

@@ -30,6 +30,9 @@ void cb_results_free(struct cb_results *r) {
   free(r->fits);
   free(r->crossings);
   free(r->convergences);
+  free(r->rooflines);
+  free(r->speeds);
+  free(r->frames);
   *r = (struct cb_results){0};
 }
 
@@ -89,6 +92,18 @@ enum cb_status cb_results_add_crossing(struct cb_results *r, const struct cb_cro
 enum cb_status cb_results_add_convergence(struct cb_results *r,
                                           const struct cb_convergence *convergence) {
   APPEND(r->convergences, r->convergence_count, convergence);
+}
+
+enum cb_status cb_results_add_roofline(struct cb_results *r, const struct cb_roofline *roofline) {
+  APPEND(r->rooflines, r->roofline_count, roofline);
+}
+
+enum cb_status cb_results_add_speed(struct cb_results *r, const struct cb_speed *speed) {
+  APPEND(r->speeds, r->speed_count, speed);
+}
+
+enum cb_status cb_results_add_frame(struct cb_results *r, const struct cb_frame *frame) {
+  APPEND(r->frames, r->frame_count, frame);
 }
 
 enum cb_status cb_results_add_measured(struct cb_results *r, const struct cb_row *row,

@@ -36,20 +36,21 @@ struct cb_ratio {
   const char *figure;
   char numerator[CB_NAME], denominator[CB_NAME];
   size_t tetrahedra, iterations;
+  size_t threads, denominator_threads;
   struct cb_interval ratio;
   double paper; /* NaN: the paper has none */
 };
 /* fits.csv: time of a step = fixed + iteration * iterations. */
 struct cb_fit {
   char variant[CB_NAME];
-  size_t tetrahedra;
+  size_t tetrahedra, threads;
   struct cb_interval fixed, iteration; /* s */
 };
 /* crossings.csv: from so many iterations on, assembling is the cheaper; INFINITY
  * (an empty cell): never. */
 struct cb_crossing {
   char assembled[CB_NAME], unassembled[CB_NAME];
-  size_t tetrahedra;
+  size_t tetrahedra, threads;
   struct cb_interval iterations;
   double paper;
 };
@@ -60,18 +61,55 @@ struct cb_convergence {
   double h, error; /* s, 1 */
 };
 
+/* roofline.csv: one product, or one whole step, against what the machine allows.
+ * Flops and bytes are of one tetrahedron; NaN: not defined. */
+struct cb_roofline {
+  const char *work, *mesh, *level; /* string constants; level: "" for a step */
+  char variant[CB_NAME];
+  size_t tetrahedra, threads;
+  double flops, bytes;
+  struct cb_interval time;            /* s, of all tetrahedra */
+  double peak, bandwidth, attainable; /* flop/s, B/s, flop/s */
+};
+/* speed.csv: how many times faster than the base, and how far from f64. */
+struct cb_speed {
+  const char *mesh;
+  char variant[CB_NAME];
+  size_t tetrahedra, threads;
+  struct cb_interval step, faster; /* s, 1 */
+  double bytes_per_tetrahedron;
+  double force_error, position_error; /* relative, see bench_speed.c */
+};
+/* frame33.csv: the largest mesh whose step fits into the frame, and the smallest that
+ * was found not to. */
+struct cb_frame {
+  const char *mesh;
+  char variant[CB_NAME];
+  size_t threads, iterations, measurements;
+  double limit_s;
+  struct cb_frame_size {
+    size_t cells, tetrahedra; /* cells along each edge; 0: none was found */
+    struct cb_interval step;  /* s */
+    double bytes;             /* of operator, solver and node vectors */
+  } fits, exceeds;
+};
+
 /* The arrays may be read, and grow by the functions below only. */
 struct cb_results {
   const char *directory; /* not owned */
   bool quick;
   struct cb_environment environment;
   size_t row_count, sample_count, ratio_count, fit_count, crossing_count, convergence_count;
+  size_t roofline_count, speed_count, frame_count;
   struct cb_row *rows;
   struct cb_sample *samples;
   struct cb_ratio *ratios;
   struct cb_fit *fits;
   struct cb_crossing *crossings;
   struct cb_convergence *convergences;
+  struct cb_roofline *rooflines;
+  struct cb_speed *speeds;
+  struct cb_frame *frames;
 };
 
 /* An empty run; makes the directory and tries to write there, so that a place
@@ -95,14 +133,23 @@ enum cb_status cb_results_add_fit(struct cb_results *r, const struct cb_fit *fit
 enum cb_status cb_results_add_crossing(struct cb_results *r, const struct cb_crossing *crossing);
 enum cb_status cb_results_add_convergence(struct cb_results *r,
                                           const struct cb_convergence *convergence);
+enum cb_status cb_results_add_roofline(struct cb_results *r, const struct cb_roofline *roofline);
+enum cb_status cb_results_add_speed(struct cb_results *r, const struct cb_speed *speed);
+enum cb_status cb_results_add_frame(struct cb_results *r, const struct cb_frame *frame);
 
 /* Write bench.csv, samples.csv, bench.json (a subset of Google Benchmark's
  * schema), ratios.csv, fits.csv, crossings.csv, convergence.csv,
+ * roofline.csv, speed.csv, scaling.csv (rows of that figure), frame33.csv,
  * environment.json and footer.txt (one line, for plots). CB_IO, CB_MEMORY. */
 enum cb_status cb_results_write(const struct cb_results *r);
 /* Its parts: the CSV files; one JSON file, with or without the benchmarks. */
 enum cb_status cb_results_write_tables(const struct cb_results *r);
 enum cb_status cb_results_write_json(const struct cb_results *r, const char *name, bool benchmarks);
+/* What is in each file, for the tables of figures. NULL when out of memory. */
+struct cb_table *cb_results_roofline_table(const struct cb_results *r);
+struct cb_table *cb_results_speed_table(const struct cb_results *r);
+struct cb_table *cb_results_scaling_table(const struct cb_results *r);
+struct cb_table *cb_results_frame_table(const struct cb_results *r);
 /* What is in bench.csv. NULL when out of memory. */
 struct cb_table *cb_results_bench_table(const struct cb_results *r);
 

@@ -29,9 +29,10 @@ static json_t *nanoseconds(double seconds) {
  * are thousands of samples: no member that is the same in all of them. */
 static json_t *benchmark_json(const struct cb_row *row, const char *suffix, const char *type,
                               double real_s, double cpu_s, size_t repeats) {
-  char name[256];
-  snprintf(name, sizeof name, "figure%s/%s/%zu/%zu%s", row->figure, row->variant, row->tetrahedra,
-           row->iterations, suffix);
+  char name[256], threads[32] = "";
+  if (row->threads > 1) snprintf(threads, sizeof threads, "/threads:%zu", row->threads);
+  snprintf(name, sizeof name, "figure%s/%s/%zu/%zu%s%s", row->figure, row->variant, row->tetrahedra,
+           row->iterations, threads, suffix);
   return json_pack("{s:s, s:s, s:I, s:o, s:o, s:s}", "name", name, "run_type", type, "iterations",
                    (json_int_t)repeats, "real_time", nanoseconds(real_s), "cpu_time",
                    nanoseconds(cpu_s), "time_unit", "ns");

@@ -6,23 +6,7 @@
 
 #include "harness/error.h"
 #include "harness/files/output.h"
-#include "harness/measure/results.h"
-
-/* Empty unless it is a finite number. */
-static void cell(struct cb_table *t, double value) {
-  if (isfinite(value))
-    cb_table_number(t, value);
-  else
-    cb_table_missing(t);
-}
-
-static void interval_cells(struct cb_table *t, struct cb_interval interval) {
-  cell(t, interval.value);
-  cell(t, interval.low);
-  cell(t, interval.high);
-}
-
-static void count_cell(struct cb_table *t, size_t count) { cb_table_integer(t, (long long)count); }
+#include "harness/measure/results_cells.h"
 
 struct cb_table *cb_results_bench_table(const struct cb_results *r) {
   struct cb_table *t =
@@ -59,8 +43,8 @@ static void clock_cell(struct cb_table *t, double seconds) {
 }
 
 static struct cb_table *samples_table(const struct cb_results *r) {
-  struct cb_table *t =
-      cb_table_create("figure,variant,tetrahedra,iterations,round,steps,step_s,cpu_s,quick");
+  struct cb_table *t = cb_table_create(
+      "figure,variant,tetrahedra,iterations,threads,round,steps,step_s,cpu_s,quick");
   for (size_t i = 0; t && i < r->sample_count; i++) {
     const struct cb_sample *sample = &r->samples[i];
     const struct cb_row *row = &r->rows[sample->row];
@@ -68,6 +52,7 @@ static struct cb_table *samples_table(const struct cb_results *r) {
     cb_table_text(t, row->variant);
     count_cell(t, row->tetrahedra);
     count_cell(t, row->iterations);
+    count_cell(t, row->threads);
     count_cell(t, sample->round);
     count_cell(t, sample->repeats);
     clock_cell(t, sample->step_s);
@@ -78,8 +63,9 @@ static struct cb_table *samples_table(const struct cb_results *r) {
 }
 
 static struct cb_table *ratios_table(const struct cb_results *r) {
-  struct cb_table *t = cb_table_create("figure,numerator,denominator,tetrahedra,iterations,"
-                                       "ratio_median,ratio_low,ratio_high,paper,quick");
+  struct cb_table *t =
+      cb_table_create("figure,numerator,denominator,tetrahedra,iterations,threads,"
+                      "denominator_threads,ratio_median,ratio_low,ratio_high,paper,quick");
   for (size_t i = 0; t && i < r->ratio_count; i++) {
     const struct cb_ratio *ratio = &r->ratios[i];
     cb_table_text(t, ratio->figure);
@@ -87,6 +73,8 @@ static struct cb_table *ratios_table(const struct cb_results *r) {
     cb_table_text(t, ratio->denominator);
     count_cell(t, ratio->tetrahedra);
     count_cell(t, ratio->iterations);
+    count_cell(t, ratio->threads);
+    count_cell(t, ratio->denominator_threads);
     interval_cells(t, ratio->ratio);
     cell(t, ratio->paper);
     cb_table_integer(t, r->quick);
@@ -95,12 +83,14 @@ static struct cb_table *ratios_table(const struct cb_results *r) {
 }
 
 static struct cb_table *fits_table(const struct cb_results *r) {
-  struct cb_table *t = cb_table_create("variant,tetrahedra,fixed_s,fixed_s_low,fixed_s_high,"
-                                       "iteration_s,iteration_s_low,iteration_s_high,quick");
+  struct cb_table *t =
+      cb_table_create("variant,tetrahedra,threads,fixed_s,fixed_s_low,fixed_s_high,"
+                      "iteration_s,iteration_s_low,iteration_s_high,quick");
   for (size_t i = 0; t && i < r->fit_count; i++) {
     const struct cb_fit *fit = &r->fits[i];
     cb_table_text(t, fit->variant);
     count_cell(t, fit->tetrahedra);
+    count_cell(t, fit->threads);
     interval_cells(t, fit->fixed);
     interval_cells(t, fit->iteration);
     cb_table_integer(t, r->quick);
@@ -109,13 +99,15 @@ static struct cb_table *fits_table(const struct cb_results *r) {
 }
 
 static struct cb_table *crossings_table(const struct cb_results *r) {
-  struct cb_table *t = cb_table_create("assembled,unassembled,tetrahedra,iterations,iterations_low,"
-                                       "iterations_high,paper,status,quick");
+  struct cb_table *t =
+      cb_table_create("assembled,unassembled,tetrahedra,threads,iterations,iterations_low,"
+                      "iterations_high,paper,status,quick");
   for (size_t i = 0; t && i < r->crossing_count; i++) {
     const struct cb_crossing *c = &r->crossings[i];
     cb_table_text(t, c->assembled);
     cb_table_text(t, c->unassembled);
     count_cell(t, c->tetrahedra);
+    count_cell(t, c->threads);
     interval_cells(t, c->iterations);
     cell(t, c->paper);
     cb_table_text(t, isinf(c->iterations.value) ? "never" : "ok");
@@ -142,9 +134,16 @@ enum cb_status cb_results_write_tables(const struct cb_results *r) {
   static const struct {
     const char *name;
     struct cb_table *(*make)(const struct cb_results *r);
-  } files[] = {{"bench.csv", cb_results_bench_table}, {"samples.csv", samples_table},
-               {"ratios.csv", ratios_table},          {"fits.csv", fits_table},
-               {"crossings.csv", crossings_table},    {"convergence.csv", convergence_table}};
+  } files[] = {{"bench.csv", cb_results_bench_table},
+               {"samples.csv", samples_table},
+               {"ratios.csv", ratios_table},
+               {"fits.csv", fits_table},
+               {"crossings.csv", crossings_table},
+               {"convergence.csv", convergence_table},
+               {"roofline.csv", cb_results_roofline_table},
+               {"speed.csv", cb_results_speed_table},
+               {"scaling.csv", cb_results_scaling_table},
+               {"frame33.csv", cb_results_frame_table}};
   enum cb_status status = CB_OK;
   for (size_t i = 0; !status && i < sizeof files / sizeof *files; i++) {
     struct cb_table *t = files[i].make(r);

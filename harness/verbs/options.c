@@ -15,6 +15,7 @@
 #include "harness/error.h"
 #include "harness/verbs/nearest.h"
 #include "harness/verbs/verbs.h"
+#include "kernels/team.h"
 
 const char *argp_program_version = "corobench 0.1, commit " CB_COMMIT;
 
@@ -24,6 +25,7 @@ enum {
   KEY_FORMAT,
   KEY_OUTPUT,
   KEY_SEED,
+  KEY_THREADS,
   KEY_HELP,
   KEY_USAGE,
   KEY_VERSION
@@ -45,6 +47,11 @@ static const struct {
     {CB_OPT_FORMAT, {"format", KEY_FORMAT, "FORMAT", 0, "table (default), csv or json", 1}},
     {CB_OPT_OUTPUT, {"output", KEY_OUTPUT, "DIR", 0, "Directory to write to, made if missing", 1}},
     {CB_OPT_SEED, {"seed", KEY_SEED, "N", 0, "Seed of everything random (default 2005)", 1}},
+    {CB_OPT_THREADS,
+     {"threads", KEY_THREADS, "N", 0,
+      "Threads of the kernels, 1 to 64, each on a processor of its own; a list like 1,2 or "
+      "repeated: one after the other",
+      1}},
     {0, {"help", KEY_HELP, NULL, 0, "Show this text", -1}},
     {0, {"usage", KEY_USAGE, NULL, 0, "Show the options in short", -1}},
     {0, {"version", KEY_VERSION, NULL, 0, "Show version and commit", -1}}};
@@ -97,6 +104,28 @@ static enum cb_status take_glob(const char *text, struct cb_options *o) {
   return CB_OK;
 }
 
+static void add_threads(size_t n, struct cb_threads *threads) {
+  for (size_t i = 0; i < threads->count; i++)
+    if (threads->of[i] == n) return;
+  threads->of[threads->count++] = n; /* of 1 to 64, each once: there is room */
+}
+
+static enum cb_status take_threads(const char *text, struct cb_threads *threads) {
+  const char *rest = text;
+  do {
+    char piece[32];
+    unsigned long n;
+    const size_t length = strcspn(rest, ",");
+    snprintf(piece, sizeof piece, "%.*s", (int)(length < sizeof piece ? length : sizeof piece),
+             rest);
+    enum cb_status status = cb_parse_count("--threads", piece, 1, CB_TEAM_MOST, &n);
+    if (status) return status;
+    add_threads(n, threads);
+    rest += length;
+  } while (*rest++);
+  return CB_OK;
+}
+
 static error_t parse_shared(int key, char *text, struct argp_state *state) {
   struct parse *p = state->input;
   struct cb_options *o = &p->options;
@@ -105,6 +134,7 @@ static error_t parse_shared(int key, char *text, struct argp_state *state) {
   case KEY_MESH: o->mesh_path = text; return 0;
   case KEY_FORMAT: return to_argp(take_format(text, &o->format));
   case KEY_OUTPUT: o->output = text; return 0;
+  case KEY_THREADS: return to_argp(take_threads(text, &o->threads));
   case KEY_SEED: return to_argp(cb_parse_count("--seed", text, 0, ULONG_MAX, &o->seed));
   case KEY_HELP:
   case KEY_USAGE:

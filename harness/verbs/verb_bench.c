@@ -10,23 +10,26 @@
 #include "harness/progress.h"
 
 static const char doc[] =
-    "Measure the paper's figures on this machine: time of a step against iterations (4) and "
-    "tetrahedra (7), convergence, memory, and the linear ancestors. With --mesh, measure the "
-    "variants on that mesh instead.";
+    "Measure on this machine: the paper's figures, time of a step against iterations (4) and "
+    "tetrahedra (7), convergence, memory and the linear ancestors; and how fast it can go: speed "
+    "against the paper's method beside the error, the roofline, scaling with size and threads. "
+    "With --mesh, measure the variants on that mesh instead.";
 
-static const struct cb_bench_figure *const figures[] = {&cb_bench_memory, &cb_bench_convergence,
-                                                        &cb_bench_figure4, &cb_bench_figure7,
-                                                        &cb_bench_ancestors};
+static const struct cb_bench_figure *const figures[] = {
+    &cb_bench_memory,    &cb_bench_convergence, &cb_bench_figure4,  &cb_bench_figure7,
+    &cb_bench_ancestors, &cb_bench_speed,       &cb_bench_roofline, &cb_bench_scaling};
 enum { FIGURES = sizeof figures / sizeof *figures };
-static const double FULL = 170, QUICK = 30; /* s; without --seconds */
+static const double FULL = 240, QUICK = 30; /* s; without --seconds */
 
 enum { KEY_FIGURE = 0x2000, KEY_QUICK, KEY_SECONDS };
 static const struct argp_option own_options[] = {
     {"figure", KEY_FIGURE, "NAME", 0,
-     "4, 7, convergence, memory or ancestors; may be repeated (default: all)", 0},
+     "4, 7, convergence, memory, ancestors, speed, roofline or scaling; may be repeated (default: "
+     "all)",
+     0},
     {"quick", KEY_QUICK, NULL, 0, "Few samples; the results are marked as such", 0},
     {"seconds", KEY_SECONDS, "S", 0,
-     "Time for measuring all figures (default 170, with --quick 30); more makes every sample "
+     "Time for measuring all figures (default 240, with --quick 30); more makes every sample "
      "steadier",
      0},
     {0}};
@@ -43,8 +46,8 @@ static enum cb_status ask(struct request *request, const char *name) {
       return CB_OK;
     }
   return cb_fail(CB_INPUT,
-                 "--figure needs 4, 7, convergence, memory or ancestors, not '%s'; the other "
-                 "figures are drawn from what verify writes",
+                 "--figure needs 4, 7, convergence, memory, ancestors, speed, roofline or scaling, "
+                 "not '%s'; the other figures are drawn from what verify writes",
                  name);
 }
 
@@ -128,7 +131,8 @@ static void print_end(const struct cb_results *r, FILE *stream) {
   fprintf(
       stream,
       "Files in %s: bench.csv and bench.json (medians), samples.csv (raw), ratios.csv, fits.csv, "
-      "crossings.csv, convergence.csv, environment.json; 'make plots' draws them there\n",
+      "crossings.csv, convergence.csv, speed.csv, roofline.csv, scaling.csv, frame33.csv, "
+      "environment.json; 'make plots' draws them there\n",
       r->directory);
 }
 
@@ -152,7 +156,8 @@ static enum cb_status run(int argc, char **argv) {
   struct cb_options options;
   struct cb_bench b;
   const struct cb_bench_figure *chosen[FIGURES];
-  const unsigned mask = CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED;
+  const unsigned mask =
+      CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED | CB_OPT_THREADS;
   enum cb_status status =
       cb_options_parse(argc, argv, mask, doc, own_options, parse, &request, &options);
   if (status) return status;

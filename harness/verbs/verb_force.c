@@ -54,6 +54,8 @@ static enum cb_status check_complete(const struct request *r, const struct cb_op
                         : isnan(r->young)   ? "--young"
                         : isnan(r->poisson) ? "--poisson"
                                             : NULL;
+  if (!missing && o->threads.count > 1)
+    return cb_fail(CB_INPUT, "force is computed once: give --threads one number, not a list");
   if (!missing) return CB_OK;
   return cb_fail(CB_INPUT, "force needs %s; see 'corobench force --help'", missing);
 }
@@ -99,12 +101,14 @@ static void *vector_create(const struct cb_arithmetic *a, size_t nodes) {
 }
 
 /* xyz[3*nodes]: positions in, elastic forces out. */
-static enum cb_status evaluate(const struct cb_variant *variant, const struct cb_mesh *mesh,
-                               const struct cb_material *material, double *xyz) {
+static enum cb_status evaluate(const struct cb_variant *variant, size_t threads,
+                               const struct cb_mesh *mesh, const struct cb_material *material,
+                               double *xyz) {
   const struct cb_arithmetic *arithmetic = variant->arithmetic;
   struct cb_operator *op = NULL;
   void *x = vector_create(arithmetic, mesh->nodes), *f = vector_create(arithmetic, mesh->nodes);
-  enum cb_status status = x && f ? cb_operator_create(variant, mesh, material, 1, 1, &op) : CB_MEMORY;
+  enum cb_status status =
+      x && f ? cb_operator_create(variant, mesh, material, 1, threads, &op) : CB_MEMORY;
   if (status != CB_OK) {
     status = status == CB_MEMORY ? cb_fail_memory("the element arrays")
                                  : cb_fail(status, "this variant is not offered for this material "
@@ -156,8 +160,9 @@ static enum cb_status run(int argc, char **argv) {
   struct cb_mesh mesh = {0};
   long long *numbers = NULL;
   double *xyz = NULL;
-  enum cb_status status = cb_options_parse(argc, argv, CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_OUTPUT,
-                                           doc, own_options, parse, &r, &o);
+  enum cb_status status =
+      cb_options_parse(argc, argv, CB_OPT_VARIANT | CB_OPT_MESH | CB_OPT_OUTPUT | CB_OPT_THREADS,
+                       doc, own_options, parse, &r, &o);
   if (status != CB_OK || (status = check_complete(&r, &o)) != CB_OK ||
       (status = the_variant(&o, &variant)) != CB_OK ||
       (status = the_material(&r, &material)) != CB_OK ||
@@ -169,7 +174,8 @@ static enum cb_status run(int argc, char **argv) {
     goto done;
   }
   if ((status = cb_positions_read(r.positions, &mesh, numbers, xyz)) != CB_OK ||
-      (status = evaluate(variant, &mesh, &material, xyz)) != CB_OK ||
+      (status = evaluate(variant, o.threads.count ? o.threads.of[0] : 1, &mesh, &material, xyz)) !=
+          CB_OK ||
       (status = check_finite(xyz, mesh.nodes, numbers)) != CB_OK)
     goto done;
   status = cb_interrupted() ? cb_fail(CB_INTERRUPTED, "interrupted; no force was written")

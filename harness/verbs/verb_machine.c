@@ -8,6 +8,7 @@
 #include "harness/error.h"
 #include "harness/files/output.h"
 #include "harness/measure/machine.h"
+#include "harness/progress.h"
 #include "harness/verbs/verbs.h"
 
 static const char doc[] =
@@ -34,41 +35,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   return ARGP_ERR_UNKNOWN;
 }
 
-static void add_rate(struct cb_table *t, const char *kind, const char *what, const char *set,
-                     size_t threads, struct cb_interval rate, const char *unit) {
-  char quantity[32];
-  snprintf(quantity, sizeof quantity, "%s-%s", kind, what);
-  cb_table_text(t, quantity);
-  cb_table_text(t, set);
-  cb_table_integer(t, (long long)threads);
-  cb_table_number(t, 1e-9 * rate.value);
-  cb_table_number(t, 1e-9 * rate.low);
-  cb_table_number(t, 1e-9 * rate.high);
-  cb_table_text(t, unit);
-}
-
-static void add_peaks(struct cb_table *t, const struct cb_machine *m, enum cb_crew crew) {
-  for (size_t set = 0; cb_loops[set].name; set++)
-    for (enum cb_scalar scalar = 0; scalar < CB_SCALARS; scalar++) {
-      if (isnan(m->peak[set][scalar][crew].value)) continue;
-      add_rate(t, "fma", cb_scalar_name[scalar], cb_loops[set].name, m->threads[crew],
-               m->peak[set][scalar][crew], "Gflop/s");
-      cb_table_missing(t);
-    }
-}
-
-static void add_bandwidths(struct cb_table *t, const struct cb_machine *m, enum cb_crew crew) {
-  for (enum cb_level level = 0; level < CB_LEVELS; level++) {
-    if (m->bytes[level][crew] == 0) continue;
-    add_rate(t, "read", cb_level_name[level], m->vectors, m->threads[crew], m->read[level][crew],
-             "GB/s");
-    cb_table_integer(t, (long long)m->bytes[level][crew]);
-    add_rate(t, "triad", cb_level_name[level], m->vectors, m->threads[crew], m->triad[level][crew],
-             "GB/s");
-    cb_table_integer(t, (long long)m->bytes[level][crew]);
-  }
-}
-
 /* A bound, not a measurement: no interval, and of the best instruction set. */
 static void add_attainable(struct cb_table *t, const struct cb_machine *m, enum cb_crew crew,
                            const struct request *r) {
@@ -90,15 +56,16 @@ static void add_attainable(struct cb_table *t, const struct cb_machine *m, enum 
 }
 
 static struct cb_table *build_table(const struct cb_machine *m, const struct request *r) {
-  struct cb_table *t =
-      cb_table_create("quantity,instruction_set,threads,value,low,high,unit,working_set_bytes");
+  struct cb_table *t = cb_machine_table(m);
   const enum cb_crew crews = m->threads[CB_ALL] > 1 ? CB_CREWS : CB_ALL;
-  if (!t) return NULL;
-  for (enum cb_crew crew = 0; crew < crews; crew++) add_peaks(t, m, crew);
-  for (enum cb_crew crew = 0; crew < crews; crew++) add_bandwidths(t, m, crew);
-  if (!isnan(r->flops))
+  if (t && !isnan(r->flops))
     for (enum cb_crew crew = 0; crew < crews; crew++) add_attainable(t, m, crew, r);
   return t;
+}
+
+static void show(void *context, double share, const char *what) {
+  (void)context;
+  cb_progress(share, what);
 }
 
 static enum cb_status run(int argc, char **argv) {
@@ -111,7 +78,10 @@ static enum cb_status run(int argc, char **argv) {
   if (isnan(r.flops) != isnan(r.bytes))
     return cb_fail(CB_INPUT, "--flops and --bytes say what one and the same work does: give both");
   if (o.output && (status = cb_output_directory(o.output)) != CB_OK) return status;
-  if ((status = cb_machine_measure(&m)) != CB_OK) return status;
+  cb_progress_begin("machine", 1);
+  status = cb_machine_measure(show, NULL, &m);
+  cb_progress_end();
+  if (status) return status;
   struct cb_table *table = build_table(&m, &r);
   if (!table) return cb_fail_memory("the table of the machine");
   if (o.output) status = cb_output_table(o.output, "machine.csv", table, CB_CSV);

@@ -22,7 +22,12 @@ enum {
   CB_OPT_MESH = 2,    /* --mesh FILE */
   CB_OPT_FORMAT = 4,  /* --format table|csv|json */
   CB_OPT_OUTPUT = 8,  /* --output DIR */
-  CB_OPT_SEED = 16    /* --seed N, default 2005 */
+  CB_OPT_SEED = 16,   /* --seed N, default 2005 */
+  CB_OPT_THREADS = 32 /* --threads N[,N...], repeatable */
+};
+/* Numbers of threads, each once, in the order given. */
+struct cb_threads {
+  size_t count, of[64];
 };
 struct cb_options {
   const char *globs[64];
@@ -30,6 +35,7 @@ struct cb_options {
   const char *mesh_path, *output;
   enum cb_format format;
   unsigned long seed;
+  struct cb_threads threads; /* count 0: not given */
 };
 
 #include <argp.h>

@@ -51,7 +51,7 @@ static enum cb_status race_run(struct race *r, unsigned long seed) {
     if (!v)
       status = cb_fail(CB_BROKEN, "%s is not in this program", r->names[i]);
     else
-      status = cb_job_create(v, &scene, &cb_bench_step, &r->jobs[i]);
+      status = cb_job_create(v, 1, &scene, &cb_bench_step, &r->jobs[i]);
     for (size_t c = 0; c < r->counts && !status; c++, n++) {
       entries[n] = (struct entry){&r->jobs[i], r->iterations[c]};
       subjects[n] = (struct cb_subject){r->names[i], restore, run_steps, &entries[n]};

@@ -1,0 +1,185 @@
+/* The largest mesh whose step fits into a frame of 33 ms: found by measuring meshes
+ * of different sizes, never by extrapolation.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness/bench/scaling.h"
+#include "harness/bench/search.h"
+#include "harness/error.h"
+#include "harness/progress.h"
+
+static const double LIMIT = 33e-3;      /* s */
+static const double MEMORY_SHARE = 0.5; /* of the machine's, at most */
+static const double STEPS_S = 0.4;      /* s of timing for each mesh */
+static const double RESOLUTION = 0.02;  /* of the cells along an edge, 6 % of all */
+static const double QUICK_RESOLUTION = 0.1;
+enum { ITERATIONS = 5, ROUNDS = 15, MIN_ROUNDS = 6, TRIALS = 3, LEAST = 2, MESHES = 2 };
+
+static const struct kind {
+  const char *name;
+  enum cb_status (*make)(const size_t cells[3], unsigned long seed, struct cb_bench_scene *scene);
+  double tets_per_cell;
+} KINDS[MESHES] = {{"grid", cb_bench_scene_grid, 10}, {"irregular", cb_bench_scene_irregular, 6}};
+
+struct session {
+  struct cb_bench *b;
+  const struct kind *kind;
+  struct cb_entry entry;
+  struct cb_frame_size fits, exceeds; /* the nearest so far */
+  double first_s, budget_s;           /* of the planned time */
+  size_t measured;
+};
+
+static void restore(void *context) {
+  struct cb_job *job = context;
+  memcpy(job->x, job->start_x, job->vector_bytes);
+  memcpy(job->v, job->start_v, job->vector_bytes);
+}
+
+static void run_steps(void *context, size_t repeats) {
+  struct cb_job *job = context;
+  for (size_t i = 0; i < repeats; i++) cb_stepper_step(job->stepper, job->x, job->v, NULL);
+}
+
+/* *step := median of a job's time, *fastest := the least, s. */
+static enum cb_status time_once(const struct cb_bench *b, struct cb_job *job,
+                                struct cb_interval *step, double *fastest) {
+  const struct cb_subject subject = {job->name, restore, run_steps, job};
+  const struct cb_timing timing = {.budget_s = STEPS_S,
+                                   .min_rounds = MIN_ROUNDS,
+                                   .max_rounds = ROUNDS,
+                                   .seed = b->options->seed};
+  struct cb_samples samples = {0};
+  enum cb_status status = cb_timer_run(1, &subject, &timing, &samples);
+  if (!status) status = cb_median_interval(samples.rounds, samples.step_s, step, NULL);
+  *fastest = INFINITY;
+  for (size_t i = 0; !status && i < samples.rounds; i++)
+    *fastest = fmin(*fastest, samples.step_s[i]);
+  cb_samples_free(&samples);
+  return status;
+}
+
+/* A median beyond the limit of which some samples are within it may be the work of
+ * another program, and would end the search far from its goal: it is taken again. */
+static enum cb_status time_job(const struct cb_bench *b, struct cb_job *job,
+                               struct cb_interval *step) {
+  double fastest = 0;
+  enum cb_status status = CB_OK;
+  *step = (struct cb_interval){INFINITY, INFINITY, INFINITY};
+  for (int i = 0; !status && i < TRIALS && step->value > LIMIT && fastest <= LIMIT; i++)
+    status = time_once(b, job, step, &fastest);
+  return status;
+}
+
+static void show(const struct session *s, size_t tets, const char *name) {
+  char what[CB_NAME + 96];
+  snprintf(what, sizeof what, "largest mesh in 33 ms: %s, %s, %zu tetrahedra", name, s->kind->name,
+           tets);
+  const double share = 1 - 1 / (1 + 0.4 * (double)s->measured); /* it is not known how many */
+  cb_progress(s->b->done_s + s->first_s + share * s->budget_s, what);
+}
+
+static enum cb_status measure(void *context, size_t cells, double *cost) {
+  struct session *s = context;
+  struct cb_bench_scene scene = {0};
+  struct cb_job job = {0};
+  struct cb_frame_size size = {.cells = cells};
+  char name[CB_NAME];
+  cb_variant_name(s->entry.variant, name);
+  if (cb_interrupted()) return cb_fail(CB_INTERRUPTED, "interrupted while searching");
+  show(s, (size_t)(s->kind->tets_per_cell * pow((double)cells, 3)), name);
+  enum cb_status status =
+      s->kind->make((const size_t[3]){cells, cells, cells}, s->b->options->seed, &scene);
+  if (!status)
+    status = cb_job_create(s->entry.variant, s->entry.threads, &scene, &cb_bench_step, &job);
+  if (!status) status = time_job(s->b, &job, &size.step);
+  if (!status) {
+    size.tetrahedra = scene.mesh.tets;
+    size.bytes =
+        (double)(cb_operator_bytes(job.op) + cb_stepper_bytes(job.stepper) + 2 * job.vector_bytes);
+    *cost = size.step.value;
+    if (*cost <= LIMIT)
+      s->fits = size;
+    else
+      s->exceeds = size;
+    s->measured++;
+  }
+  cb_job_free(&job);
+  cb_bench_scene_free(&scene);
+  return status;
+}
+
+/* Cells along an edge of a mesh of so many tetrahedra, in [LEAST, most]. */
+static size_t edge_of(const struct kind *kind, double tets, size_t most) {
+  const double edge = cbrt(tets / kind->tets_per_cell);
+  return edge > (double)most ? most : edge > LEAST ? (size_t)edge : LEAST;
+}
+
+/* One search, from what a smaller or larger mesh took. */
+static enum cb_status search(struct session *s, const struct cb_row *row) {
+  const struct cb_bench *b = s->b;
+  const double memory = b->results.environment.memory, tets = (double)row->tetrahedra;
+  const double room = memory > 0 ? MEMORY_SHARE * memory / cb_scaling_bytes(row, 1) : 1e8;
+  struct cb_search search = {.low = LEAST,
+                             .high = edge_of(s->kind, room, 1000),
+                             .resolution = b->results.quick ? QUICK_RESOLUTION : RESOLUTION,
+                             .limit = LIMIT,
+                             .measure = measure,
+                             .context = s};
+  search.first = edge_of(s->kind, LIMIT * tets / row->step.value, search.high);
+  s->fits = s->exceeds = (struct cb_frame_size){0};
+  s->measured = 0;
+  enum cb_status status = cb_search_run(&search);
+  if (status) return status;
+  struct cb_frame frame = {.mesh = s->kind->name,
+                           .threads = s->entry.threads,
+                           .iterations = ITERATIONS,
+                           .measurements = search.measurements,
+                           .limit_s = LIMIT,
+                           .fits = s->fits,
+                           .exceeds = s->exceeds};
+  cb_variant_name(s->entry.variant, frame.variant);
+  status = cb_results_add_frame(&s->b->results, &frame);
+  return status ? status : cb_results_write(&s->b->results);
+}
+
+enum cb_status cb_frame_search(struct cb_bench *b, size_t count, const struct cb_entry *entries,
+                               double budget_s) {
+  struct session s = {.b = b, .budget_s = budget_s / (double)(MESHES * count + !count)};
+  enum cb_status status = CB_OK;
+  for (size_t i = 0; !status && i < count; i++)
+    for (size_t k = 0; !status && k < MESHES; k++, s.first_s += s.budget_s) {
+      const struct cb_row *row = cb_scaling_last(&b->results, entries[i]);
+      s.entry = entries[i];
+      s.kind = &KINDS[k];
+      if (row) status = search(&s, row);
+    }
+  return status;
+}
+
+void cb_frame_print(const struct cb_results *r, FILE *stream) {
+  struct cb_table *t = cb_table_create(
+      "variant,mesh,threads,tetrahedra,cells,step_ms,MB,does_not_fit,step_ms,measured");
+  for (size_t i = 0; t && i < r->frame_count; i++) {
+    const struct cb_frame *f = &r->frames[i];
+    cb_table_text(t, f->variant);
+    cb_table_text(t, f->mesh);
+    cb_table_integer(t, (long long)f->threads);
+    cb_table_integer(t, (long long)f->fits.tetrahedra);
+    cb_table_integer(t, (long long)f->fits.cells);
+    cb_bench_number_cell(t, f->fits.cells ? 1e3 * f->fits.step.value : NAN);
+    cb_bench_number_cell(t, f->fits.cells ? 1e-6 * f->fits.bytes : NAN);
+    cb_table_integer(t, (long long)f->exceeds.tetrahedra);
+    cb_bench_number_cell(t, f->exceeds.cells ? 1e3 * f->exceeds.step.value : NAN);
+    cb_table_integer(t, (long long)f->measurements);
+  }
+  cb_bench_print(stream,
+                 "The largest mesh whose step of 5 iterations fits into 33 ms, and the next one "
+                 "measured that does not;\ncells: along each edge of the block; MB: operator, "
+                 "solver and node vectors; measured: meshes tried",
+                 t);
+}
