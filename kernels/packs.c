@@ -117,8 +117,9 @@ static bool grow(struct drafts *d) {
   return true;
 }
 
-/* Units of one pack are so far apart in the list: neighbours share nodes, and adding
- * to a node that has just been added to waits for it. */
+/* Single tetrahedra of one pack are so far apart in the list: neighbours share nodes,
+ * and adding to a node that has just been added to waits for it. Clusters have
+ * nothing to gain from that: they add to a node once. */
 static const size_t APART = 16;
 
 /* list[count] := units list[count] with each LANES * APART of them turned from rows
@@ -131,12 +132,16 @@ static void spread(size_t lanes, size_t count, uint32_t *list, uint32_t *copy) {
 }
 
 /* A thread's units of one shape, those of part 0 first, those of part 2 last, into
- * list; returns how many. */
-static size_t list_units(const struct units *U, size_t thread, size_t shape, uint32_t *list) {
+ * list[2 * units]; returns how many. The second half is for work. */
+static size_t list_units(const struct units *U, size_t lanes, size_t thread, size_t shape,
+                         uint32_t *list) {
   size_t count = 0;
-  for (int part = 0; part < 3; part++)
+  for (int part = 0; part < 3; part++) {
+    const size_t first = count;
     for (size_t u = first_of(U, shape); u < first_of(U, shape + 1); u++)
       if (U->thread[u] == thread && U->part[u] == part) list[count++] = (uint32_t)u;
+    if (!U->clusters) spread(lanes, count - first, list + first, list + U->count);
+  }
   return count;
 }
 
@@ -201,8 +206,7 @@ static enum cb_status draft_packs(const struct units *U, struct cb_packs *P, str
   for (size_t t = 0; room && t < P->threads; t++) {
     const size_t first = d->count;
     for (size_t s = 0; room && s < U->shapes; s++) {
-      const size_t count = list_units(U, t, s, list);
-      spread(P->lanes, count, list, list + U->count);
+      const size_t count = list_units(U, P->lanes, t, s, list);
       room = draft_shape(U, P->lanes, s, count, list, d);
     }
     if (d->count > first)
