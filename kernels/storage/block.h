@@ -60,8 +60,17 @@ INLINE NODE node_load(const S *at) { return *(const LOOSE_NODE *)at; }
 
 INLINE NODE node_splat(S a) { return (NODE){a, a, a, a}; }
 
+/* Not a number beyond the block is read: another thread may be writing it. */
 INLINE struct block block_load(const S *first, size_t step) {
-  return (struct block){{node_load(first), node_load(first + step), node_load(first + 2 * step)}};
+  struct block b;
+  if (step == 3) {
+    const NODE last = node_load(first + 5);
+    b.row[0] = node_load(first), b.row[1] = node_load(first + 3);
+    b.row[2] = __builtin_shufflevector(last, last, 1, 2, 3, 3);
+  } else
+    for (size_t r = 0; r < 3; r++)
+      b.row[r] = (NODE){first[r * step], first[r * step + 1], first[r * step + 2], 0};
+  return b;
 }
 
 INLINE void block_store(const struct block *b, S *first, size_t step) {
