@@ -37,6 +37,6 @@ has convergence.csv '^[^,]+,[0-9]' && draw convergence
 has speed.csv '^[^,]+,.*,[0-9.e+-]+,[01]$' && draw speed
 has roofline.csv '^product,' && draw roofline
 has scaling.csv '^[^,]+,[0-9]' && draw scaling
-has frame33.csv '^[^,]+,[^,]+,[0-9]' && draw frame33
+has frame33.csv '^([^,]+,){5}[0-9]' && draw frame33
 find "$dir" -maxdepth 1 \( -name "*.svg" -o -name "*.png" \) | sort
 exit $status

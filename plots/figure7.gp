@@ -83,7 +83,7 @@ do for [g in groups] {
       set xlabel "tetrahedra"
       unset logscale y
       set yrange [0.5:*]
-      set key top right
+      set key bottom right
       plot for [i = 1:words(list)] in("ratios.csv") \
           using (is_ratio(word(list, i), Q[i]) ? aside(S[i]) : NaN):"ratio_median" \
           with lines linestyle S[i] notitle, \

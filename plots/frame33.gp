@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 load "plots/style.gp"
 width = 1200
-variants = system("awk -F, 'NR > 1 && !seen[$1]++ {print $1}' " . quoted("frame33.csv"))
-cases = system("awk -F, 'NR > 1 && !seen[$2 $3]++ {print $2 \"@\" $3}' " . quoted("frame33.csv"))
+variants = system("awk -F, 'NR > 1 && $6 > 0 && !seen[$1]++ {print $1}' " . quoted("frame33.csv"))
+cases = system("awk -F, 'NR > 1 && $6 > 0 && !seen[$2 $3]++ {print $2 \"@\" $3}' " . \
+  quoted("frame33.csv") . " | sort -t@ -k2n -k1")
 rows = words(variants)
 height = 200 + 70 * rows
 is(v, c) = strcol("variant") eq v && strcol("mesh") eq part(c, 1) && strcol("threads") eq part(c, 2)

@@ -44,6 +44,7 @@ do for [kind in "svg png"] {
   set output in("roofline." . kind)
   set multiplot title "Roofline: how far is one product from what this machine allows?" \
     font ",15" noenhanced
+  set samples 2000 # the roofs are cut off by it
   set logscale xy
   set xrange [0.1:40]
   set yrange [1:1000]

@@ -23,7 +23,9 @@ static const struct kind {
   const char *name;
   enum cb_status (*make)(const size_t cells[3], unsigned long seed, struct cb_bench_scene *scene);
   double tets_per_cell;
-} KINDS[MESHES] = {{"grid", cb_bench_scene_grid, 10}, {"irregular", cb_bench_scene_irregular, 6}};
+  double guess; /* of the tetrahedra of a grid as fast: where to begin */
+} KINDS[MESHES] = {{"grid", cb_bench_scene_grid, 10, 1},
+                   {"irregular", cb_bench_scene_irregular, 6, 0.72}};
 
 struct session {
   struct cb_bench *b;
@@ -119,6 +121,19 @@ static size_t edge_of(const struct kind *kind, double tets, size_t most) {
   return edge > (double)most ? most : edge > LEAST ? (size_t)edge : LEAST;
 }
 
+static enum cb_status add_frame(struct session *s, size_t measurements) {
+  struct cb_frame frame = {.mesh = s->kind->name,
+                           .threads = s->entry.threads,
+                           .iterations = ITERATIONS,
+                           .measurements = measurements,
+                           .limit_s = LIMIT,
+                           .fits = s->fits,
+                           .exceeds = s->exceeds};
+  cb_variant_name(s->entry.variant, frame.variant);
+  const enum cb_status status = cb_results_add_frame(&s->b->results, &frame);
+  return status ? status : cb_results_write(&s->b->results);
+}
+
 /* One search, from what a smaller or larger mesh took. */
 static enum cb_status search(struct session *s, const struct cb_row *row) {
   const struct cb_bench *b = s->b;
@@ -130,51 +145,71 @@ static enum cb_status search(struct session *s, const struct cb_row *row) {
                              .limit = LIMIT,
                              .measure = measure,
                              .context = s};
-  search.first = edge_of(s->kind, LIMIT * tets / row->step.value, search.high);
-  s->fits = s->exceeds = (struct cb_frame_size){0};
+  search.first = edge_of(s->kind, s->kind->guess * LIMIT * tets / row->step.value, search.high);
   s->measured = 0;
-  enum cb_status status = cb_search_run(&search);
-  if (status) return status;
-  struct cb_frame frame = {.mesh = s->kind->name,
-                           .threads = s->entry.threads,
-                           .iterations = ITERATIONS,
-                           .measurements = search.measurements,
-                           .limit_s = LIMIT,
-                           .fits = s->fits,
-                           .exceeds = s->exceeds};
-  cb_variant_name(s->entry.variant, frame.variant);
-  status = cb_results_add_frame(&s->b->results, &frame);
-  return status ? status : cb_results_write(&s->b->results);
+  const enum cb_status status = cb_search_run(&search);
+  return status ? status : add_frame(s, search.measurements);
 }
 
-enum cb_status cb_frame_search(struct cb_bench *b, size_t count, const struct cb_entry *entries,
+static double seconds_of(const struct cb_results *r, struct cb_entry entry) {
+  const struct cb_row *row = cb_scaling_last(r, entry);
+  return row ? row->step.value / (double)row->tetrahedra : INFINITY;
+}
+
+/* The fastest first: what there is no time for is what matters least. */
+static void sort(const struct cb_results *r, size_t count, struct cb_entry *entries) {
+  for (size_t i = 1; i < count; i++)
+    for (size_t k = i; k > 0 && seconds_of(r, entries[k]) < seconds_of(r, entries[k - 1]); k--) {
+      const struct cb_entry entry = entries[k];
+      entries[k] = entries[k - 1];
+      entries[k - 1] = entry;
+    }
+}
+
+enum cb_status cb_frame_search(struct cb_bench *b, size_t count, struct cb_entry *entries,
                                double budget_s) {
   struct session s = {.b = b, .budget_s = budget_s / (double)(MESHES * count + !count)};
   enum cb_status status = CB_OK;
-  for (size_t i = 0; !status && i < count; i++)
+  const double begin = cb_timer_now();
+  sort(&b->results, count, entries);
+  for (size_t i = 0; !status && i < count; i++) {
+    const bool in_time = i == 0 || cb_timer_now() - begin < budget_s;
     for (size_t k = 0; !status && k < MESHES; k++, s.first_s += s.budget_s) {
       const struct cb_row *row = cb_scaling_last(&b->results, entries[i]);
+      if (!row) continue;
       s.entry = entries[i];
       s.kind = &KINDS[k];
-      if (row) status = search(&s, row);
+      s.fits = s.exceeds = (struct cb_frame_size){0};
+      status = in_time ? search(&s, row) : add_frame(&s, 0);
     }
+  }
   return status;
+}
+
+static void size_cells(struct cb_table *t, const struct cb_frame_size *size) {
+  if (size->cells == 0) {
+    for (int i = 0; i < 4; i++) cb_table_missing(t);
+    return;
+  }
+  cb_table_integer(t, (long long)size->tetrahedra);
+  cb_table_integer(t, (long long)size->cells);
+  cb_table_number(t, 1e3 * size->step.value);
+  cb_table_number(t, 1e-6 * size->bytes);
 }
 
 void cb_frame_print(const struct cb_results *r, FILE *stream) {
   struct cb_table *t = cb_table_create(
-      "variant,mesh,threads,tetrahedra,cells,step_ms,MB,does_not_fit,step_ms,measured");
+      "variant,mesh,threads,tetrahedra,cells,step_ms,MB,does_not_fit,cells,step_ms,MB,measured");
+  size_t left_out = 0;
   for (size_t i = 0; t && i < r->frame_count; i++) {
     const struct cb_frame *f = &r->frames[i];
+    left_out += f->measurements == 0;
+    if (f->measurements == 0) continue;
     cb_table_text(t, f->variant);
     cb_table_text(t, f->mesh);
     cb_table_integer(t, (long long)f->threads);
-    cb_table_integer(t, (long long)f->fits.tetrahedra);
-    cb_table_integer(t, (long long)f->fits.cells);
-    cb_bench_number_cell(t, f->fits.cells ? 1e3 * f->fits.step.value : NAN);
-    cb_bench_number_cell(t, f->fits.cells ? 1e-6 * f->fits.bytes : NAN);
-    cb_table_integer(t, (long long)f->exceeds.tetrahedra);
-    cb_bench_number_cell(t, f->exceeds.cells ? 1e3 * f->exceeds.step.value : NAN);
+    size_cells(t, &f->fits);
+    size_cells(t, &f->exceeds);
     cb_table_integer(t, (long long)f->measurements);
   }
   cb_bench_print(stream,
@@ -182,4 +217,7 @@ void cb_frame_print(const struct cb_results *r, FILE *stream) {
                  "measured that does not;\ncells: along each edge of the block; MB: operator, "
                  "solver and node vectors; measured: meshes tried",
                  t);
+  if (left_out > 0)
+    fprintf(stream, "%zu more were not searched: there was no time; give more with --seconds\n",
+            left_out);
 }

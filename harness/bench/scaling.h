@@ -7,9 +7,11 @@
 #include "harness/bench/bench.h"
 
 /* Find the largest mesh, a grid and an irregular one, whose step of 5 iterations is
- * done within 33 ms, for each entry: a row each, written at once. First guesses come
- * from the rows of figure "scaling"; an entry without one, which failed, is left out. */
-enum cb_status cb_frame_search(struct cb_bench *b, size_t count, const struct cb_entry *entries,
+ * done within 33 ms, for each entry, the fastest first: a row each, written at once.
+ * First guesses come from the rows of figure "scaling"; an entry without one, which
+ * failed, gets no row. After budget_s no further entry is searched: its rows, of 0
+ * measurements, say so. entries are reordered. */
+enum cb_status cb_frame_search(struct cb_bench *b, size_t count, struct cb_entry *entries,
                                double budget_s);
 void cb_frame_print(const struct cb_results *r, FILE *stream);
 

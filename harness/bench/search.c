@@ -16,7 +16,12 @@ static size_t next_size(const struct cb_search *s, size_t size, double cost) {
   const size_t least = s->fits ? s->fits + 1 : s->low;
   const size_t most = s->exceeds ? s->exceeds - 1 : s->high;
   double next = (double)size * cbrt(s->limit / cost);
-  if (s->fits && s->exceeds && s->measurements % 4 == 0) next = (double)(s->fits + s->exceeds) / 2;
+  if (s->fits && s->exceeds) {
+    const double low = pow((double)s->fits, 3), high = pow((double)s->exceeds, 3);
+    const double share = (s->limit - s->fits_cost) / (s->exceeds_cost - s->fits_cost);
+    next = s->measurements % 4 == 0 ? (double)(s->fits + s->exceeds) / 2
+                                    : cbrt(low + share * (high - low));
+  }
   if (!(next > (double)least)) return least; /* a NaN as well */
   return next < (double)most ? (size_t)next : most;
 }
@@ -29,10 +34,13 @@ enum cb_status cb_search_run(struct cb_search *s) {
     const enum cb_status status = s->measure(s->context, size, &cost);
     if (status) return status;
     s->measurements++;
-    if (cost <= s->limit)
+    if (cost <= s->limit) {
       s->fits = size;
-    else
+      s->fits_cost = cost;
+    } else {
       s->exceeds = size;
+      s->exceeds_cost = cost;
+    }
     size = next_size(s, size, cost);
   }
   return CB_OK;

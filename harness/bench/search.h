@@ -16,11 +16,12 @@ struct cb_search {
   enum cb_status (*measure)(void *context, size_t size, double *cost);
   void *context;
   size_t fits, exceeds; /* results: the sizes found; 0: even low does not fit, even high does */
+  double fits_cost, exceeds_cost;
   size_t measurements;
 };
 
-/* Search, first where the third power says, then by bisection as well: a handful of
- * measurements, none twice. What measure returns is passed on. */
+/* Search where the third power says, then between what is known, now and then in the
+ * middle of it: a handful of measurements, none twice. What measure returns is passed on. */
 enum cb_status cb_search_run(struct cb_search *s);
 
 #endif

@@ -19,7 +19,7 @@ static const struct cb_bench_figure *const figures[] = {
     &cb_bench_memory,    &cb_bench_convergence, &cb_bench_figure4,  &cb_bench_figure7,
     &cb_bench_ancestors, &cb_bench_speed,       &cb_bench_roofline, &cb_bench_scaling};
 enum { FIGURES = sizeof figures / sizeof *figures };
-static const double FULL = 240, QUICK = 30; /* s; without --seconds */
+static const double FULL = 220, QUICK = 30; /* s; without --seconds */
 
 enum { KEY_FIGURE = 0x2000, KEY_QUICK, KEY_SECONDS };
 static const struct argp_option own_options[] = {
@@ -29,7 +29,7 @@ static const struct argp_option own_options[] = {
      0},
     {"quick", KEY_QUICK, NULL, 0, "Few samples; the results are marked as such", 0},
     {"seconds", KEY_SECONDS, "S", 0,
-     "Time for measuring all figures (default 240, with --quick 30); more makes every sample "
+     "Time for measuring all figures (default 220, with --quick 30); more makes every sample "
      "steadier",
      0},
     {0}};
