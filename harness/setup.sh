@@ -24,6 +24,12 @@ has_library() { # HEADER LIBRARIES
   $CC $INCLUDES -o "$scratch/try" "$scratch/try.c" $2 2>/dev/null
 }
 
+has_openmp() { # COMPILER
+  printf '#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' \
+    >"$scratch/try.c"
+  $1 -fopenmp -o "$scratch/try" "$scratch/try.c" 2>/dev/null
+}
+
 lack() { # PACKAGE WHY
   packages="$packages $1"
   reasons="$reasons  $1: $2
@@ -42,6 +48,11 @@ look() { # COMMAND...
   command -v gnuplot >/dev/null || lack gnuplot-nox 'gnuplot, draws the figures'
   for command in "$@"; do
     command -v "$command" >/dev/null || lack "$command" 'asked for by who called setup'
+  done
+  for compiler in "$CC" "$@"; do # gcc brings its own
+    case $compiler in
+    *clang*) has_openmp "$compiler" || lack libomp-dev 'OpenMP for clang, runs the threads' ;;
+    esac
   done
 }
 
