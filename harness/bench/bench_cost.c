@@ -14,6 +14,10 @@ static const struct cb_variant *counted(const struct cb_variant *v) {
   return NULL;
 }
 
+bool cb_cost_assembled(const struct cb_variant *v) {
+  return strstr(cb_storage_name[v->storage], "csr") != NULL; /* csr, bcsr and what follows */
+}
+
 static double executed(void) {
   struct cb_counts counts[STAGES];
   double sum = 0;
@@ -85,7 +89,6 @@ double cb_cost_bytes(const struct cb_operator *op, const struct cb_mesh *mesh) {
   const struct cb_variant *v = cb_operator_variant(op);
   const double vectors = v->storage == CB_EBE_RECOMPUTE ? 3 : 2;
   const double vector = (double)(mesh->nodes * v->arithmetic->stride * v->arithmetic->scalar_bytes);
-  const bool assembled = v->storage == CB_CSR || v->storage == CB_BCSR;
-  const double own = assembled ? matrix_bytes(op) : element_bytes(op, mesh);
+  const double own = cb_cost_assembled(v) ? matrix_bytes(op) : element_bytes(op, mesh);
   return (own + vectors * vector) / (double)mesh->tets;
 }

@@ -81,8 +81,8 @@ static enum cb_status count_flops(struct session *s, struct point *p) {
       return CB_OK;
     }
   const struct cb_variant *v = p->job.variant;
-  const bool assembled = v->storage == CB_CSR || v->storage == CB_BCSR;
-  enum cb_status status = cb_cost_product(v, assembled ? s->scene : s->counted, &p->flops[0]);
+  const struct cb_bench_scene *scene = cb_cost_assembled(v) ? s->scene : s->counted;
+  enum cb_status status = cb_cost_product(v, scene, &p->flops[0]);
   if (!status) status = cb_cost_step(v, s->counted, &p->flops[1]);
   return status;
 }

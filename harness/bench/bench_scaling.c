@@ -35,8 +35,9 @@ static const double MEMORY_SHARE = 0.4; /* of the machine's */
 static bool wanted(const struct cb_variant *v) {
   if (strcmp(v->model->name, "qr-updated") != 0) return false;
   if (v->arithmetic == cb_arithmetics[0]) return v->storage == CB_EBE_PAPER;
-  return v->arithmetic == cb_bench_lanes(sizeof(float)) && v->storage != CB_EBE_MATRIX &&
-         v->storage != CB_CSR;
+  return v->arithmetic == cb_bench_lanes(sizeof(float)) &&
+         (v->storage == CB_EBE || v->storage == CB_EBE_CLUSTER || v->storage == CB_EBE_RECOMPUTE ||
+          v->storage == CB_BCSR);
 }
 
 static size_t tetrahedra(const struct size *size) {

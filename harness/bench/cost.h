@@ -6,6 +6,9 @@
 
 #include "harness/bench/bench.h"
 
+/* Is the product that of an assembled matrix, whole or half? */
+bool cb_cost_assembled(const struct cb_variant *v);
+
 /* Operations (multiplications, additions, divisions, roots; a fused multiply-add is
  * two) of one product, and of one whole step of cb_bench_step, executed by the counted
  * arithmetic of the same model and storage on the scene, by its tetrahedra. Clusters
