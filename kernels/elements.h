@@ -68,7 +68,6 @@ struct cb_elements {
   size_t bytes;                    /* of every array here but X and x */
   T k;                             /* lambda/mu = 2 nu/(1 - 2 nu) */
   T root, inverse_root, inverse_c; /* of c mu share / 6; of c: for rest data made of X */
-  bool far;                        /* is the state larger than a processor's second cache? */
   S *x;                            /* ebe-recompute: positions of the last update, a node vector */
   /* assembled storages */
   struct cb_pattern *pattern;

@@ -23,15 +23,17 @@ OUTLINE void frame_called(const T *e, const T *F, T *memory, T *R) {
 
 #ifndef FRAME_WORLD
 /* Frame and deformation gradient of one pack.
- * in      policy, ortho  constants; rest; e, own (update_pack_fn)
+ * in      policy, exact, ortho  constants; rest; e, own (update_pack_fn)
  * in/out  memory
- * out     R[9]  frame; F[9]  such that F R^T - I, made symmetric, is the corotated
- *         strain in world axes */
+ * out     R[9]  frame
+ *         F[9]  such that F R^T - I, made symmetric, is the corotated strain in world
+ *               axes; not read for a precomputed B
+ *         L[3]  exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
+ *               a symmetric one */
 #define FRAME_WORLD frame_world
-INLINE void frame_world(const struct cb_elements *E, int policy, int ortho, const T *rest,
-                        const T *e, const T *own, T *memory, T *R, T *F) {
-  (void)E;
-  (void)own, (void)memory;
+INLINE void frame_world(const struct cb_elements *E, int policy, int exact, int ortho,
+                        const T *rest, const T *e, const T *own, T *memory, T *R, T *F, T *L) {
+  (void)E, (void)exact, (void)own, (void)memory, (void)L;
   deformation_gradient(policy, rest, e, F);
   if (ortho)
     frame_called(own, F, memory, R);
@@ -51,8 +53,8 @@ INLINE void frame_world(const struct cb_elements *E, int policy, int ortho, cons
 INLINE void frame_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
                        const T *e, const T *own, T *memory, T *R, T *P, T *y) {
   T F[9], stretch[9];
-  (void)exact, (void)y;
-  frame_world(E, policy, ortho, rest, e, own, memory, R, F);
+  (void)y;
+  frame_world(E, policy, exact, ortho, rest, e, own, memory, R, F, NULL);
   corotated_stress(E->k, rest, ortho, R, F, stretch, P);
 }
 #endif
@@ -86,39 +88,56 @@ INLINE void world_gradients(int policy, bool sparse, int frameless, const T *res
   for (int i = 0; i < 9; i++) w[i] = scale * w[i];
 }
 
-/* M := R P R^T, P not symmetric. */
-INLINE void world_stress(const T *R, const T *P, T *M) {
-  T RP[9];
-  multiply3(R, P, RP);
-  multiply3_nt(RP, R, M);
-}
-
-/* M := -h s M - stress of the velocity gradient: force and product in one go. */
-INLINE void absorb(int ortho, T k, const T *rest, T h, const T *w, const T *ev, T *M) {
+/* M := -h s M - stress of the velocity gradient, orthotropic: force and product in
+ * one go. */
+INLINE void absorb(const T *rest, T h, const T *b, const T *ev, T *M) {
   T scale = -(h * rest[REST_FORCE]);
   for (int i = 0; i < 9; i++) M[i] = scale * M[i];
   if (ev) {
     T H[9], N[9];
-    gradient3(ev, w, H);
-    stress(ortho, k, rest + REST_D, H, N);
+    gradient3(ev, b, H);
+    stress(1, LIT(0), rest + REST_D, H, N);
     for (int i = 0; i < 9; i++) M[i] = M[i] - N[i];
   }
 }
 
-/* f := h f - c K v, where the stress is a function of F R^T alone: strain and
- * velocity gradient are added before there is a stress of either. */
-INLINE void world_forces(const struct cb_elements *E, int ortho, const T *rest, const T *R,
-                         const T *F, T h, const T *w, const T *ev, T *f) {
-  T Z[9], M[9], scale = -(h * rest[REST_FORCE]);
-  if (R)
-    multiply3_nt(F, R, Z);
-  else
-    for (int i = 0; i < 9; i++) Z[i] = F[i];
+/* Z := scale (F R^T - I) - sum ev_j (x) w_j: strain and velocity gradient are added
+ * before there is a stress of either. With precomputed B, w_j = R grad0_j, and
+ * F R^T is a sum over the edges as well. */
+INLINE void world_strain(int policy, const T *rest, const T *R, const T *F, T scale, const T *e,
+                         const T *ev, const T *w, T *Z) {
+  T d[9];
+  if (policy == POLICY_PRECOMPUTED) {
+    T edge = scale * rest[REST_EDGE];
+    for (int i = 0; i < 9; i++) d[i] = ev ? edge * e[i] - ev[i] : edge * e[i];
+    gradient3(d, w, Z);
+    for (int i = 0; i < 9; i += 4) Z[i] = Z[i] - scale;
+    return;
+  }
+  multiply3_nt(F, R, Z);
   for (int i = 0; i < 9; i++) Z[i] = scale * (i % 4 == 0 ? Z[i] - LIT(1) : Z[i]);
   if (ev)
     for (int i = 0; i < 9; i++)
       for (int j = 0; j < 9; j += 3) Z[i] = Z[i] - ev[j + i / 3] * w[j + i % 3];
+}
+
+/* M += scale R P R^T, P = L below its diagonal, zero elsewhere. */
+INLINE void add_lower(const T *R, T scale, const T *L, T *M) {
+  T p21 = scale * L[0], p31 = scale * L[1], p32 = scale * L[2];
+  for (int i = 0; i < 9; i += 3) {
+    T first = R[i + 1] * p21 + R[i + 2] * p31, second = R[i + 2] * p32;
+    for (int j = 0; j < 3; j++) M[i + j] = M[i + j] + first * R[3 * j] + second * R[3 * j + 1];
+  }
+}
+
+/* f := h f - c K v, where the stress is a function of F R^T, and of L. */
+INLINE void world_forces(const struct cb_elements *E, int policy, int exact, int ortho,
+                         const T *rest, const T *R, const T *F, const T *L, T h, const T *e,
+                         const T *w, const T *ev, T *f) {
+  T Z[9], M[9], scale = -(h * rest[REST_FORCE]);
+  world_strain(policy, rest, R, F, scale, e, ev, w, Z);
   stress(ortho, E->k, rest + REST_D, Z, M);
+  if (exact) add_lower(R, scale, L, M);
   forces3(M, w, f);
 }
 
@@ -137,31 +156,23 @@ INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T
 INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
                            const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
                            T *R, T *w, T *f) {
-  T P[9], M[9], y[6], q[9], p[9];
-  if (NO_FRAME || (!ortho && !exact)) {
-    T F[9];
-    FRAME_WORLD(E, policy, ortho, rest, e, own, memory, R, F);
+  if (NO_FRAME || !ortho) {
+    T F[9], L[3];
+    FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
     STAGE(STAGE_B);
     world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
     STAGE(STAGE_FORCE);
-    world_forces(E, ortho, rest, NO_FRAME ? NULL : R, F, h, w, ev, f);
+    world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
     return;
   }
+  T P[9], y[6], q[9], p[9];
   FRAME_PACK(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
   STAGE(STAGE_B);
-  if (!ortho) {
-    world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
-    STAGE(STAGE_FORCE);
-    world_stress(R, P, M);
-    absorb(ortho, E->k, rest, h, w, ev, M);
-    forces3(M, w, f);
-    return;
-  }
   local_gradients(policy, rest, e, R, w);
   STAGE(STAGE_FORCE);
   if (ev)
     for (int j = 0; j < 9; j += 3) apply3_transposed(R, ev + j, q + j);
-  absorb(1, E->k, rest, h, w, ev ? q : NULL, P);
+  absorb(rest, h, w, ev ? q : NULL, P);
   forces3(P, w, p);
   for (int j = 0; j < 9; j += 3) apply3(R, p + j, f + j);
 }

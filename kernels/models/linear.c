@@ -26,7 +26,8 @@ static void assembled(struct cb_elements *E, size_t thread) {
         assembled(E, thread);                                                                      \
       })
 ASSEMBLED_ONCE(linear_once_assembled_update_iso, linear_assembled_update_iso, linear_ebe_update_iso)
-ASSEMBLED_ONCE(linear_once_assembled_update_ortho, linear_assembled_update_ortho, linear_ebe_update_ortho)
+ASSEMBLED_ONCE(linear_once_assembled_update_ortho, linear_assembled_update_ortho,
+               linear_ebe_update_ortho)
 ASSEMBLED_ONCE(linear_matrix_once_iso, linear_matrix_update_iso, linear_ebe_update_iso)
 ASSEMBLED_ONCE(linear_matrix_once_ortho, linear_matrix_update_ortho, linear_ebe_update_ortho)
 
@@ -41,11 +42,11 @@ const struct cb_model CB_NAME(cb_model_linear) = {
     .laws = {LINEAR_LAWS, LINEAR_LAWS},
     .policy = POLICY_PRECOMPUTED,
     .keeps_rest = true,
-    .form = {[CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
-             [CB_EBE_CLUSTER] = {FORM_CLUSTER(linear, iso, 0), FORM_CLUSTER(linear, ortho, 0)},
-             [CB_EBE_MATRIX] = {{linear_matrix_once_iso, CB_NAME(cb_product_matrix), 54},
-                                {linear_matrix_once_ortho, CB_NAME(cb_product_matrix), 54}},
-             [CB_CSR] = FORMS_CSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),
-             [CB_BCSR] = FORMS_BCSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),
-             [CB_BCSR_SYMMETRIC] =
-                 FORMS_BCSR_SYMMETRIC(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS)}};
+    .form = {
+        [CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
+        [CB_EBE_CLUSTER] = {FORM_CLUSTER(linear, iso, 0), FORM_CLUSTER(linear, ortho, 0)},
+        [CB_EBE_MATRIX] = {{linear_matrix_once_iso, CB_NAME(cb_product_matrix), 54},
+                           {linear_matrix_once_ortho, CB_NAME(cb_product_matrix), 54}},
+        [CB_CSR] = FORMS_CSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),
+        [CB_BCSR] = FORMS_BCSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),
+        [CB_BCSR_SYMMETRIC] = FORMS_BCSR_SYMMETRIC(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS)}};

@@ -78,13 +78,19 @@ INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int orth
   if (exact) qr_gradient(U, P);
 }
 
-INLINE void qr_world(const struct cb_elements *E, int policy, int ortho, const T *rest, const T *e,
-                     const T *own, T *memory, T *R, T *F) {
-  T y[3];
-  (void)ortho, (void)memory;
-  frame_qr_axes(own, R, y);
-  STAGE(STAGE_FORCE);
-  qr_gradient_of_edges(E, policy, rest, e, F);
+INLINE void qr_world(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
+                     const T *e, const T *own, T *memory, T *R, T *F, T *L) {
+  T y[6];
+  (void)memory;
+  if (!exact) {
+    frame_qr_axes(own, R, y);
+    STAGE(STAGE_FORCE);
+    if (policy != POLICY_PRECOMPUTED) qr_gradient_of_edges(E, policy, rest, e, F);
+    return;
+  }
+  T P[9];
+  qr_pack(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
+  L[0] = P[3] - P[1], L[1] = P[6] - P[2], L[2] = P[7] - P[5];
 }
 
 #define SPARSE 1

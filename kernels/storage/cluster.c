@@ -196,21 +196,9 @@ INLINE void by_model(const struct cb_elements *E, size_t slot, product_pack_fn *
   model(E, E->rest + slot * E->rest_numbers, E->state + slot * E->state_numbers, du, f);
 }
 
-/* The processor's own foresight ends with a page; that of states too large for its
- * caches does not. */
-enum { AHEAD = 8 }; /* slots */
-INLINE void by_far_gradients(const struct cb_elements *E, size_t slot, product_pack_fn *model,
-                             const T *e, const T *du, T *f) {
-  for (int i = 0; i < 9; i++) __builtin_prefetch(E->state + 9 * (slot + AHEAD) + i);
-  by_gradients(E, slot, model, e, du, f);
-}
-
 void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t thread,
                                            const void *u, void *y) {
-  if (E->far)
-    product_clusters(E, thread, u, y, by_far_gradients, false, NULL);
-  else
-    product_clusters(E, thread, u, y, by_gradients, false, NULL);
+  product_clusters(E, thread, u, y, by_gradients, false, NULL);
 }
 
 void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,

@@ -268,9 +268,6 @@ static enum cb_status upright(const struct cb_mesh *mesh, uint32_t **copy) {
   return CB_OK;
 }
 
-/* Bytes of it, a core; half a megabyte to two on what is in use. */
-static const size_t SECOND_CACHE = (size_t)1 << 20;
-
 static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh *mesh,
                                bool keeps_rest, struct cb_elements *E) {
   const size_t slots = E->packs->slots, threads = E->packs->threads;
@@ -278,7 +275,6 @@ static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh 
   if (keeps_rest) E->rest = array(E, slots * E->rest_numbers, sizeof(T));
   E->memory = array(E, slots * E->memory_numbers, sizeof(T));
   E->state = array(E, slots * E->state_numbers, sizeof(T));
-  E->far = slots * E->state_numbers * sizeof(T) > SECOND_CACHE;
   if (!E->turn || (keeps_rest && !E->rest) || !E->memory || !E->state) return CB_MEMORY;
   if (v->model->node_frames) {
     E->node_frame = array(E, 9 * E->nodes, sizeof(S));
