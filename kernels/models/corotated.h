@@ -280,15 +280,28 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 
 /* ---- one model: its storages, isotropic and orthotropic ---------------- */
 
+/* Isotropic elements in clusters are what is timed: their work is inlined. */
+#define CLUSTER_DRIVE_iso update_clusters
+#define CLUSTER_DRIVE_ortho drive_update_clusters
+
 /* Functions of model ID with the element functions bound to constants. */
 #define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
+  INLINE void ID##_whole_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
+                               const T *ev, T h, T *m, T *R, T *w, T *f) {                         \
+    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, R, w, f);                         \
+  }                                                                                                \
   PACK_LINKAGE void ID##_pack_##TAG(const struct cb_elements *E, const T *r, const T *e,           \
                                     const T *own, const T *ev, T h, T *m, T *R, T *w, T *f) {      \
-    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, R, w, f);                         \
+    ID##_whole_##TAG(E, r, e, own, ev, h, m, R, w, f);                                             \
   }                                                                                                \
   INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,    \
                              const T *ev, T h, T *m, T *s, T *f) {                                 \
     corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, own, ev, h, m, s, f);                   \
+  }                                                                                                \
+  INLINE void ID##_cluster_##TAG(const struct cb_elements *E, const T *r, const T *e,              \
+                                 const T *own, const T *ev, T h, T *m, T *s, T *f) {               \
+    corotated_ebe(E, ORTHO ? ID##_pack_##TAG : ID##_whole_##TAG, POLICY, ORTHO, r, e, own, ev, h,  \
+                  m, s, f);                                                                        \
   }                                                                                                \
   INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own, \
                                 const T *ev, T h, T *m, T *X, T *f) {                              \
@@ -302,7 +315,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
       corotated_gradients(E, ID##_pack_##TAG, r, e, own, ev, h, m, X, f);                          \
   }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
-  STORAGE_CLUSTER(ID, TAG)                                                                         \
+  STORAGE_CLUSTER(ID, TAG, CLUSTER_DRIVE_##TAG, ID##_cluster_##TAG)                                \
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))                                                                \
   STORAGE_ASSEMBLED(ID, TAG, ID##_terms_##TAG, (ORTHO) ? TERMS_BLOCKS : TERMS_GRADIENTS)
 
