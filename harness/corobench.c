@@ -7,12 +7,13 @@
 #include <string.h>
 
 #include "harness/error.h"
+#include "harness/nearest.h"
 #include "harness/progress.h"
-#include "harness/verbs/nearest.h"
 #include "harness/verbs/verbs.h"
 
-static const struct cb_verb *const verbs[] = {&cb_verb_bench, &cb_verb_verify,  &cb_verb_force,
-                                              &cb_verb_ops,   &cb_verb_machine, &cb_verb_list};
+static const struct cb_verb *const verbs[] = {&cb_verb_advise,  &cb_verb_bench, &cb_verb_verify,
+                                              &cb_verb_force,   &cb_verb_ops,   &cb_verb_scene,
+                                              &cb_verb_machine, &cb_verb_list};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static void print_help(FILE *stream) {
@@ -23,7 +24,8 @@ static void print_help(FILE *stream) {
     fprintf(stream, "  %-8s %s\n", verbs[i]->name, verbs[i]->summary);
   fputs("\n'corobench VERB --help' lists a verb's options.\n"
         "Exit status: 0 done, 1 a checked expectation does not hold, 2 unusable input or another\n"
-        "failure (said in one sentence on standard error), 130 interrupted.\n",
+        "failure (said in one sentence on standard error), 3 nothing meets the needs of a scene,\n"
+        "130 interrupted.\n",
         stream);
 }
 

@@ -25,6 +25,7 @@ int cb_exit_status(enum cb_status status) {
   switch (status) {
   case CB_OK: return 0;
   case CB_BROKEN: return 1;
+  case CB_UNMET: return 3;
   case CB_INTERRUPTED: return 130;
   default: return 2;
   }

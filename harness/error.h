@@ -19,8 +19,8 @@ enum cb_status cb_fail_memory(const char *what);
 /* The last recorded sentence, without a newline; "" if none. */
 const char *cb_error_message(void);
 
-/* What main exits with: 0 for CB_OK, 1 for CB_BROKEN, 130 for CB_INTERRUPTED,
- * otherwise 2. */
+/* What main exits with: 0 for CB_OK, 1 for CB_BROKEN, 3 for CB_UNMET, 130 for
+ * CB_INTERRUPTED, otherwise 2. */
 int cb_exit_status(enum cb_status status);
 
 #endif

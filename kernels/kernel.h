@@ -23,7 +23,8 @@ enum cb_status {
   CB_IO,          /* a file could not be read or written */
   CB_NUMERIC,     /* a matrix is not positive definite, a fit is singular */
   CB_INTERRUPTED, /* Ctrl-C */
-  CB_BROKEN       /* an expectation that the program checks does not hold */
+  CB_BROKEN,      /* an expectation that the program checks does not hold */
+  CB_UNMET        /* nothing does what is needed */
 };
 
 /* ---- mesh and material --------------------------------------------------- */

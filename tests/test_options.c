@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "harness/error.h"
-#include "harness/verbs/nearest.h"
+#include "harness/nearest.h"
 #include "harness/verbs/verbs.h"
 
 enum {

@@ -18,6 +18,10 @@ struct cb_gate_result {
   char reason[160];
 };
 
+struct cb_threads cb_bench_threads(void) {
+  return (struct cb_threads){cb_crew_limit() > 1 ? 2 : 1, {1, 2}};
+}
+
 enum cb_status cb_bench_create(const struct cb_options *options, bool quick, double seconds,
                                struct cb_bench *b) {
   size_t variants;
@@ -28,7 +32,7 @@ enum cb_status cb_bench_create(const struct cb_options *options, bool quick, dou
   made.paper_threads = made.threads = options->threads;
   if (options->threads.count == 0) {
     made.paper_threads = (struct cb_threads){1, {1}};
-    made.threads = (struct cb_threads){cb_crew_limit() > 1 ? 2 : 1, {1, 2}};
+    made.threads = cb_bench_threads();
   }
   const char *directory = options->output ? options->output : "results/latest";
   const enum cb_status status = cb_results_create(directory, quick, &made.results);

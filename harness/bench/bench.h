@@ -71,6 +71,8 @@ enum cb_status cb_bench_create(const struct cb_options *options, bool quick, dou
                                struct cb_bench *b);
 void cb_bench_free(struct cb_bench *b);
 
+/* What is timed without --threads: 1 and, where there are two processors, 2. */
+struct cb_threads cb_bench_threads(void);
 /* What is timed. */
 struct cb_entry {
   const struct cb_variant *variant;

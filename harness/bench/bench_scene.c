@@ -26,24 +26,11 @@ void cb_bench_scene_free(struct cb_bench_scene *scene) {
   *scene = (struct cb_bench_scene){0};
 }
 
-struct box {
-  double low[3], high[3];
-};
-
-static struct box bounds(const struct cb_mesh *mesh) {
-  struct box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-  for (size_t i = 0; i < 3 * mesh->nodes; i++) {
-    box.low[i % 3] = fmin(box.low[i % 3], mesh->X[i]);
-    box.high[i % 3] = fmax(box.high[i % 3], mesh->X[i]);
-  }
-  return box;
-}
-
 /* Turn each node about the vertical axis through the middle, the higher the
  * more, and shake it. */
 static void deform(struct cb_bench_scene *scene, gsl_rng *rng) {
   const struct cb_mesh *mesh = &scene->mesh;
-  const struct box box = bounds(mesh);
+  const struct cb_box box = cb_mesh_bounds(mesh);
   const double height = box.high[2] - box.low[2];
   const double volume = height * (box.high[0] - box.low[0]) * (box.high[1] - box.low[1]);
   const double shake = NOISE * cbrt(volume / (double)mesh->nodes);
@@ -98,27 +85,13 @@ enum cb_status cb_bench_scene_grid(const size_t cells[3], unsigned long seed,
   return status;
 }
 
-/* No result of bench names a node: the file's numbers may go. */
-static enum cb_status put_in_order(struct cb_mesh *mesh) {
-  struct cb_order order = {0};
-  struct cb_mesh ordered;
-  enum cb_status status = cb_order_create(mesh, &order);
-  if (!status) status = cb_order_mesh(&order, mesh, &ordered);
-  if (!status) {
-    cb_mesh_free(mesh);
-    *mesh = ordered;
-  }
-  cb_order_free(&order);
-  return status;
-}
-
 enum cb_status cb_bench_scene_irregular(const size_t cells[3], unsigned long seed,
                                         struct cb_bench_scene *scene) {
   struct cb_bench_scene made = {0};
   enum cb_status status = cb_mesh_irregular(cells[0], cells[1], cells[2],
                                             HEIGHT / (double)cells[2], seed, &made.mesh);
   if (status) return status;
-  status = put_in_order(&made.mesh);
+  status = cb_order_apply(&made.mesh);
   if (!status) status = complete(seed, &made);
   if (status)
     cb_bench_scene_free(&made);
@@ -132,14 +105,14 @@ enum cb_status cb_bench_scene_mesh(const char *path, unsigned long seed,
   struct cb_bench_scene made = {0};
   enum cb_status status = cb_mesh_read(path, &made.mesh, NULL);
   if (status) return status;
-  const struct box box = bounds(&made.mesh);
+  const struct cb_box box = cb_mesh_bounds(&made.mesh);
   const double scale = HEIGHT / (box.high[2] - box.low[2]);
   if (!(scale > 0 && isfinite(scale))) {
     cb_mesh_free(&made.mesh);
     return cb_fail(CB_INPUT, "%s: the mesh has no height along z; give one of solid bodies", path);
   }
   for (size_t i = 0; i < 3 * made.mesh.nodes; i++) made.mesh.X[i] *= scale;
-  status = put_in_order(&made.mesh);
+  status = cb_order_apply(&made.mesh);
   if (!status) status = complete(seed, &made);
   if (status)
     cb_bench_scene_free(&made);

@@ -20,6 +20,15 @@ enum cb_status cb_mesh_allocate(size_t nodes, size_t tets, struct cb_mesh *mesh)
   return CB_OK;
 }
 
+struct cb_box cb_mesh_bounds(const struct cb_mesh *mesh) {
+  struct cb_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+  for (size_t i = 0; i < 3 * mesh->nodes; i++) {
+    box.low[i % 3] = fmin(box.low[i % 3], mesh->X[i]);
+    box.high[i % 3] = fmax(box.high[i % 3], mesh->X[i]);
+  }
+  return box;
+}
+
 void cb_mesh_free(struct cb_mesh *mesh) {
   free(mesh->X);
   free(mesh->tet);

@@ -8,6 +8,10 @@
 
 /* Arrays for that many nodes and tetrahedra, uninitialised, share 1. CB_MEMORY. */
 enum cb_status cb_mesh_allocate(size_t nodes, size_t tets, struct cb_mesh *mesh);
+struct cb_box {
+  double low[3], high[3]; /* m; of no node: infinity, -infinity */
+};
+struct cb_box cb_mesh_bounds(const struct cb_mesh *mesh); /* at rest */
 void cb_mesh_free(struct cb_mesh *mesh); /* and zero it; a zeroed mesh is allowed */
 
 /* The paper's block: nx*ny*nz cubic cells of that edge length (m), corner at

@@ -184,3 +184,16 @@ void cb_order_backward(const struct cb_order *order, size_t width, const double 
   for (size_t n = 0; n < order->nodes; n++)
     memcpy(out + width * n, in + width * order->node[n], width * sizeof *out);
 }
+
+enum cb_status cb_order_apply(struct cb_mesh *mesh) {
+  struct cb_order order = {0};
+  struct cb_mesh ordered;
+  enum cb_status status = cb_order_create(mesh, &order);
+  if (!status) status = cb_order_mesh(&order, mesh, &ordered);
+  if (!status) {
+    cb_mesh_free(mesh);
+    *mesh = ordered;
+  }
+  cb_order_free(&order);
+  return status;
+}

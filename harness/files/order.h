@@ -32,6 +32,9 @@ void cb_order_free(struct cb_order *order); /* and zero it; a zeroed order is al
 enum cb_status cb_order_mesh(const struct cb_order *order, const struct cb_mesh *mesh,
                              struct cb_mesh *ordered);
 
+/* The mesh put into an order of its own, where no one needs the old numbers. CB_MEMORY. */
+enum cb_status cb_order_apply(struct cb_mesh *mesh);
+
 /* Node vectors of `width` numbers a node (mass: 1, positions: 3) from the old
  * numbers to the new, and back. in and out must not overlap. */
 void cb_order_forward(const struct cb_order *order, size_t width, const double *in, double *out);

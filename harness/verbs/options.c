@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "harness/error.h"
-#include "harness/verbs/nearest.h"
+#include "harness/nearest.h"
 #include "harness/verbs/verbs.h"
 #include "kernels/team.h"
 
@@ -63,6 +63,7 @@ struct parse {
   const struct argp_option *own;
   struct argp_option taken[SHARED + 1];
   const struct argp *root;
+  bool scene; /* is one expected? */
 };
 
 static error_t to_argp(enum cb_status status) { return status == CB_OK ? 0 : EINVAL; }
@@ -188,6 +189,10 @@ static error_t parse_root(int key, char *text, struct argp_state *state) {
     if (state->root_argp->children[1].argp) state->child_inputs[1] = p->input;
     return 0;
   case ARGP_KEY_ARG:
+    if (p->scene && !p->options.scene_path) {
+      p->options.scene_path = text;
+      return 0;
+    }
     return to_argp(cb_fail(CB_INPUT,
                            "unexpected word '%s': options begin with two dashes; see "
                            "'%s --help'",
@@ -231,8 +236,11 @@ enum cb_status cb_options_parse(int argc, char **argv, unsigned mask, const char
   struct argp common = {.options = p.taken, .parser = parse_shared};
   struct argp verb = {.options = options, .parser = parser};
   struct argp_child children[] = {{&common, 0, NULL, 0}, {parser ? &verb : NULL, 0, NULL, 0}, {0}};
-  struct argp root = {.parser = parse_root, .doc = doc, .children = children};
-  p.root = &root;
+  struct argp root = {.parser = parse_root,
+                      .args_doc = mask & CB_OPT_SCENE ? "SCENE" : NULL,
+                      .doc = doc,
+                      .children = children};
+  p.root = &root, p.scene = mask & CB_OPT_SCENE;
   for (size_t i = 0, n = 0; i < SHARED; i++)
     if (!shared[i].mask || (shared[i].mask & mask)) p.taken[n++] = shared[i].option;
 
@@ -243,6 +251,10 @@ enum cb_status cb_options_parse(int argc, char **argv, unsigned mask, const char
   if (error) return CB_INPUT;
   for (size_t i = 0; i < p.options.glob_count; i++)
     if (check_glob(p.options.globs[i]) != CB_OK) return CB_INPUT;
+  if (p.scene && !p.options.scene_path)
+    return cb_fail(CB_INPUT,
+                   "no scene is given: name a file, e.g. scenes/block.json; see '%s --help'",
+                   argv[0]);
   *o = p.options;
   return CB_OK;
 }

@@ -13,7 +13,7 @@ struct cb_verb {
   enum cb_status (*run)(int argc, char **argv); /* argv[0] = "corobench NAME" */
 };
 extern const struct cb_verb cb_verb_list, cb_verb_verify, cb_verb_ops, cb_verb_force, cb_verb_bench,
-    cb_verb_machine;
+    cb_verb_machine, cb_verb_scene, cb_verb_advise, cb_verb_trade;
 
 /* Options that several verbs share; a verb takes those of its mask. */
 enum {
@@ -23,7 +23,8 @@ enum {
   CB_OPT_FORMAT = 4,  /* --format table|csv|json */
   CB_OPT_OUTPUT = 8,  /* --output DIR */
   CB_OPT_SEED = 16,   /* --seed N, default 2005 */
-  CB_OPT_THREADS = 32 /* --threads N[,N...], repeatable */
+  CB_OPT_THREADS = 32, /* --threads N[,N...], repeatable */
+  CB_OPT_SCENE = 64    /* SCENE, the one word that is no option; must be there */
 };
 /* Numbers of threads, each once, in the order given. */
 struct cb_threads {
@@ -32,7 +33,7 @@ struct cb_threads {
 struct cb_options {
   const char *globs[64];
   size_t glob_count;
-  const char *mesh_path, *output;
+  const char *mesh_path, *output, *scene_path;
   enum cb_format format;
   unsigned long seed;
   struct cb_threads threads; /* count 0: not given */
@@ -44,8 +45,8 @@ struct cb_options {
  * (NULL: none), called with `state->input == input`. Bad usage: CB_INPUT,
  * recorded, never exit(); --help, --usage and --version print and exit 0.
  * A glob that selects nothing is CB_INPUT and names the close matches. *o is
- * untouched on failure; its texts are argv's own. No verb takes arguments
- * that are not options: the verb's parser does not see them. */
+ * untouched on failure; its texts are argv's own. The verb's
+ * parser does not see words that are not options: there are none but SCENE. */
 enum cb_status cb_options_parse(int argc, char **argv, unsigned mask, const char *doc,
                                 const struct argp_option *options, argp_parser_t parser,
                                 void *input, struct cb_options *o);

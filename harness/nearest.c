@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "harness/verbs/nearest.h"
+#include "harness/nearest.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,0 +1,48 @@
+/* body.h - a scene made into nodes and numbers, at some resolution.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_BODY_H
+#define CB_BODY_H
+
+#include "harness/bench/bench.h"
+#include "harness/scene/scene.h"
+
+/* Nodes of one handle. */
+struct cb_grip {
+  const struct cb_handle *handle;
+  size_t count;
+  uint32_t *node;
+  double centre[3]; /* of its nodes at rest, m */
+};
+
+/* A point of the rest shape: weights of the four nodes of the tetrahedron that holds
+ * it. The same points whatever the mesh, so that resolutions compare. */
+struct cb_point {
+  uint32_t node[4];
+  double weight[4];
+};
+enum { CB_POINTS = 64 };
+
+struct cb_body {
+  const struct cb_scene *scene;
+  struct cb_bench_scene at; /* mesh, material, mass, what is held, the start */
+  double *external;         /* [3*nodes] N; NULL: no load and no gravity */
+  struct cb_grip grip[CB_SCENE_LIST];
+  struct cb_point point[CB_POINTS];
+  double size; /* largest edge of the bounding box at rest, m */
+};
+
+/* resolution: of a generated mesh, cells for each one of the scene's (0.5: half as
+ * many along each edge; at least one); a mesh file is taken as it is: 1. The scene is
+ * kept. CB_INPUT, recorded: a selection without nodes, an unreadable mesh; CB_IO,
+ * CB_MEMORY. */
+enum cb_status cb_body_create(const struct cb_scene *scene, double resolution,
+                              struct cb_body *body);
+void cb_body_free(struct cb_body *body); /* zeroed is allowed */
+
+/* x[3*nodes] := where the handles are at time t; other nodes are left alone. */
+void cb_body_grip(const struct cb_body *body, double t, double *x);
+/* p[3*CB_POINTS] := the points' places for node positions x[3*nodes]. */
+void cb_body_points(const struct cb_body *body, const double *x, double *p);
+
+#endif

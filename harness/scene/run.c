@@ -1,0 +1,249 @@
+/* run.c - see run.h.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "harness/scene/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness/error.h"
+#include "harness/measure/timer.h"
+#include "harness/progress.h"
+#include "reference/direct.h"
+#include "reference/energy.h"
+
+/* A body on its way. */
+struct way {
+  const struct cb_body *body;
+  struct cb_step_parameters step;
+  size_t steps;
+  struct cb_job job;
+  struct cb_direct *direct; /* NULL: conjugate gradients */
+  double *blocks, *diagonal;
+  void *external; /* node vectors of the arithmetic, or NULL */
+  void *force;
+  double *x, *v, *f; /* [3*nodes] */
+  double *time;      /* [steps], s */
+  double most_torque, most_lever, most_net, most_force;
+};
+
+static void close_way(struct way *w) {
+  cb_job_free(&w->job);
+  cb_direct_free(w->direct);
+  free(w->blocks);
+  free(w->diagonal);
+  free(w->external);
+  free(w->force);
+  free(w->x);
+  free(w->v);
+  free(w->f);
+  free(w->time);
+}
+
+static enum cb_status open_direct(struct way *w) {
+  const struct cb_bench_scene *at = &w->body->at;
+  const uint32_t *row_start, *column;
+  cb_operator_pattern(w->job.op, &row_start, &column);
+  w->blocks = malloc(9 * sizeof *w->blocks * row_start[at->mesh.nodes]);
+  w->diagonal = malloc(at->mesh.nodes * sizeof *w->diagonal);
+  if (!w->blocks || !w->diagonal) return cb_fail_memory("the direct solver");
+  for (size_t i = 0; i < at->mesh.nodes; i++)
+    w->diagonal[i] = at->mass[i] * (1 + w->step.h * w->step.beta);
+  return cb_bench_explain(
+      cb_direct_create(at->mesh.nodes, row_start, column, at->fixed, &w->direct),
+      "the direct solver");
+}
+
+static enum cb_status open_way(const struct cb_body *body, const struct cb_trial *trial,
+                               struct way *w) {
+  const struct cb_scene *scene = body->scene;
+  const struct cb_arithmetic *a = trial->variant->arithmetic;
+  const size_t nodes = body->at.mesh.nodes;
+  const double look = scene->duration / CB_SAMPLES;
+  const size_t between = (size_t)ceil(look / trial->step * (1 - 1e-9));
+  *w = (struct way){.body = body, .steps = CB_SAMPLES * between};
+  w->step = (struct cb_step_parameters){look / (double)between, scene->alpha, scene->beta,
+                                        trial->iterations};
+  enum cb_status status =
+      cb_job_create(trial->variant, trial->threads, &body->at, &w->step, &w->job);
+  if (status) return status;
+  w->force = aligned_alloc(64, w->job.vector_bytes);
+  w->x = malloc(3 * nodes * sizeof *w->x);
+  w->v = malloc(3 * nodes * sizeof *w->v);
+  w->f = malloc(3 * nodes * sizeof *w->f);
+  w->time = malloc(w->steps * sizeof *w->time);
+  if (!w->force || !w->x || !w->v || !w->f || !w->time) return cb_fail_memory("the simulation");
+  if (body->external) {
+    w->external = aligned_alloc(64, w->job.vector_bytes);
+    if (!w->external) return cb_fail_memory("the loads");
+    a->from_double(nodes, body->external, w->external);
+  }
+  return trial->iterations ? CB_OK : open_direct(w);
+}
+
+/* ---- one step ------------------------------------------------------------------------ */
+
+static void put_number(const struct cb_arithmetic *a, void *vector, size_t i, double value) {
+  switch (a->scalar_bytes) {
+  case sizeof(float): ((float *)vector)[i] = (float)value; break;
+  case sizeof(double): ((double *)vector)[i] = value; break;
+  default: ((__float128 *)vector)[i] = value;
+  }
+}
+
+static void move_handles(struct way *w, double t) {
+  const struct cb_arithmetic *a = w->job.variant->arithmetic;
+  cb_body_grip(w->body, t, w->x);
+  for (size_t n = 0; n < w->body->scene->handle_count; n++)
+    for (size_t i = 0; i < w->body->grip[n].count; i++) {
+      const size_t node = w->body->grip[n].node[i];
+      for (size_t k = 0; k < 3; k++)
+        put_number(a, w->job.x, a->stride * node + k, w->x[3 * node + k]);
+    }
+}
+
+/* In double, as the direct solver is. */
+static enum cb_status step_directly(struct way *w) {
+  double *x = w->job.x, *v = w->job.v, *dv = w->f;
+  const struct cb_bench_scene *at = &w->body->at;
+  cb_stepper_right_side(w->job.stepper, x, v, w->external);
+  cb_operator_blocks(w->job.op, w->blocks);
+  enum cb_status status = cb_direct_factor(w->direct, w->blocks, w->diagonal);
+  if (!status) status = cb_direct_solve(w->direct, cb_stepper_b(w->job.stepper), dv);
+  for (size_t i = 0; !status && i < 3 * at->mesh.nodes; i++) {
+    v[i] = at->fixed[i / 3] ? 0 : v[i] + dv[i];
+    x[i] += w->step.h * v[i];
+  }
+  return cb_bench_explain(status, "a step of the scene");
+}
+
+/* ---- a look --------------------------------------------------------------------------- */
+
+/* The larger one; NaN if either is. */
+static double larger(double a, double b) { return isnan(a) || a > b ? a : b; }
+
+/* Sums over the elastic forces, which are internal: they should vanish. */
+static void look_at_forces(struct way *w) {
+  const size_t nodes = w->body->at.mesh.nodes;
+  const struct cb_arithmetic *a = w->job.variant->arithmetic;
+  double c[3] = {0}, net[3] = {0}, torque[3] = {0}, force = 0, lever = 0;
+  cb_operator_update(w->job.op, w->job.x, NULL, 1, w->force);
+  a->to_double(nodes, w->force, w->f);
+  for (size_t i = 0; i < 3 * nodes; i++) c[i % 3] += w->x[i] / (double)nodes;
+  for (size_t i = 0; i < nodes; i++) {
+    const double *f = w->f + 3 * i;
+    double r[3];
+    for (int k = 0; k < 3; k++) r[k] = w->x[3 * i + k] - c[k];
+    for (int k = 0; k < 3; k++) {
+      net[k] += f[k];
+      torque[k] += r[(k + 1) % 3] * f[(k + 2) % 3] - r[(k + 2) % 3] * f[(k + 1) % 3];
+    }
+    const double size = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+    force += size;
+    lever += size * sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  }
+  w->most_net = larger(sqrt(net[0] * net[0] + net[1] * net[1] + net[2] * net[2]), w->most_net);
+  w->most_torque = larger(
+      sqrt(torque[0] * torque[0] + torque[1] * torque[1] + torque[2] * torque[2]), w->most_torque);
+  w->most_force = larger(force, w->most_force);
+  w->most_lever = larger(lever, w->most_lever);
+}
+
+static void look(struct way *w, struct cb_outcome *o, size_t sample) {
+  const struct cb_bench_scene *at = &w->body->at;
+  const struct cb_arithmetic *a = w->job.variant->arithmetic;
+  a->to_double(at->mesh.nodes, w->job.x, w->x);
+  a->to_double(at->mesh.nodes, w->job.v, w->v);
+  for (size_t i = 0; i < 3 * at->mesh.nodes; i++)
+    if (!isfinite(w->x[i]) || !isfinite(w->v[i])) o->finite = false;
+  if (!o->finite) return;
+  cb_body_points(w->body, w->x, o->point[sample]);
+  look_at_forces(w);
+  double kinetic = 0;
+  for (size_t i = 0; i < 3 * at->mesh.nodes; i++)
+    kinetic += at->mass[i / 3] / 2 * w->v[i] * w->v[i];
+  o->energy[sample] = kinetic + cb_elastic_energy(&at->mesh, &at->material, w->x, &o->inverted);
+}
+
+/* ---- all steps -------------------------------------------------------------------------- */
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static enum cb_status step_once(struct way *w, size_t n) {
+  if (w->body->scene->handle_count) move_handles(w, (double)(n + 1) * w->step.h);
+  const double begin = cb_timer_now();
+  enum cb_status status = CB_OK;
+  if (w->direct)
+    status = step_directly(w);
+  else
+    cb_stepper_step(w->job.stepper, w->job.x, w->job.v, w->external);
+  w->time[n] = cb_timer_now() - begin;
+  if (cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted while simulating");
+  return status;
+}
+
+static void conclude(struct way *w, struct cb_outcome *o, size_t steps) {
+  qsort(w->time, steps, sizeof *w->time, ascending);
+  o->steps = w->steps;
+  o->step_s = w->time[steps / 2];
+  o->seconds = o->step_s / w->step.h;
+  o->torque = !o->finite ? NAN : w->most_lever > 0 ? w->most_torque / w->most_lever : 0;
+  o->net_force = !o->finite ? NAN : w->most_force > 0 ? w->most_net / w->most_force : 0;
+}
+
+enum cb_status cb_body_run(const struct cb_body *body, const struct cb_trial *trial,
+                           struct cb_outcome *outcome) {
+  struct way w;
+  struct cb_outcome o = {.finite = true};
+  enum cb_status status = open_way(body, trial, &w);
+  size_t done = 0;
+  const size_t between = w.steps / CB_SAMPLES;
+  while (!status && o.finite && done < w.steps) {
+    status = step_once(&w, done++);
+    if (!status && done % between == 0) look(&w, &o, done / between - 1);
+  }
+  if (!status) {
+    conclude(&w, &o, done);
+    *outcome = o;
+  }
+  close_way(&w);
+  return status;
+}
+
+enum cb_status cb_body_truth(const struct cb_body *body, struct cb_outcome *truth) {
+  const struct cb_trial trial = {cb_variant_find("polar-exact/bcsr/f64"), 1, 0,
+                                 body->scene->step / 10};
+  enum cb_status status = cb_body_run(body, &trial, truth);
+  if (!status && !truth->finite)
+    status = cb_fail(CB_NUMERIC,
+                     "scene '%s' has no truth: it breaks down at a tenth of its step; "
+                     "give it a shorter one",
+                     body->scene->name);
+  return status;
+}
+
+double cb_outcome_error(const struct cb_outcome *outcome, const struct cb_outcome *truth,
+                        double size) {
+  double worst = outcome->finite ? 0 : NAN;
+  for (size_t s = 0; s < CB_SAMPLES; s++)
+    for (size_t p = 0; p < 3 * CB_POINTS; p += 3) {
+      const double *a = outcome->point[s] + p, *b = truth->point[s] + p;
+      worst = larger(worst, sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                                 (a[2] - b[2]) * (a[2] - b[2])) /
+                                size);
+    }
+  return worst;
+}
+
+double cb_outcome_energy_error(const struct cb_outcome *outcome, const struct cb_outcome *truth) {
+  double worst = outcome->finite ? 0 : NAN, largest = 0;
+  for (size_t s = 0; s < CB_SAMPLES; s++) {
+    worst = larger(worst, fabs(outcome->energy[s] - truth->energy[s]));
+    largest = fmax(largest, fabs(truth->energy[s]));
+  }
+  return worst / largest;
+}

@@ -1,0 +1,67 @@
+/* scene.h - what is to be simulated and what it needs: geometry, material, what is
+ * held, pushed and moved, step and duration, laws and tolerances. Read strictly
+ * from scenes/NAME.json; units are in the keys.
+ *
+ * What a scene does not name is not there: absent parts cost nothing in a step.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_SCENE_H
+#define CB_SCENE_H
+
+#include "kernels/kernel.h"
+
+/* Nodes of the rest shape in a box of fractions of its bounding box. */
+struct cb_selection {
+  double low[3], high[3];
+};
+
+struct cb_load {
+  struct cb_selection where;
+  double force[3]; /* N, on all of them together, shared out by mass */
+};
+
+/* Nodes that go their way: from t = 0 to `over` turned about their centre and moved,
+ * then held. */
+struct cb_handle {
+  struct cb_selection where;
+  double turn[3]; /* rad, times the axis */
+  double move[3]; /* m */
+  double over;    /* s, > 0 */
+};
+
+enum { CB_SCENE_LIST = 8 }; /* at most so many selections, loads or handles */
+
+/* What the result is for; a tolerance of infinity is no need. */
+struct cb_needs {
+  unsigned laws;       /* bits CB_KEEPS(law) */
+  double displacement; /* largest error of a point, of the scene's size */
+  double torque;       /* largest relative ghost torque, 1 */
+  double energy;       /* largest error of the energy, of its largest value */
+  double frames_per_s; /* in real time; 0: no need */
+  bool inversion;      /* elements invert, and must be upright in the end */
+};
+
+struct cb_scene {
+  char name[64], about[200];
+  char mesh_path[512]; /* "": a block of ten tetrahedra a cell */
+  size_t cells[3];     /* of the block */
+  double cell;         /* m */
+  double scale;        /* of the mesh file's lengths */
+  struct cb_material material;
+  struct cb_selection fixed[CB_SCENE_LIST];
+  struct cb_load load[CB_SCENE_LIST];
+  struct cb_handle handle[CB_SCENE_LIST];
+  size_t fixed_count, load_count, handle_count;
+  double gravity[3];           /* m/s^2 */
+  double velocity[3], spin[3]; /* at the start, m/s, rad/s about the centre of mass */
+  double stretch[3], twist;    /* at the start: 1; rad about z, from foot to head */
+  double alpha, beta;          /* Rayleigh damping, s, 1/s */
+  double step, duration;       /* s */
+  struct cb_needs needs;
+};
+
+/* Read scenes/NAME.json, name: the file's without .json. CB_INPUT with file, line, what
+ * was found and what was expected; CB_IO, CB_MEMORY. */
+enum cb_status cb_scene_read(const char *path, struct cb_scene *scene);
+
+#endif
