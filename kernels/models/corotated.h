@@ -180,11 +180,11 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
 typedef void corotated_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
                                const T *ev, T h, T *memory, T *R, T *w, T *f);
 
-/* f := c K u where R = I. */
-INLINE void frameless_product(T k, int ortho, const T *rest, const T *u, T *f) {
+/* f := c K u where R = I, orthotropic. */
+INLINE void frameless_product(const T *rest, const T *u, T *f) {
   T H[9], M[9];
   gradient3(u, rest + REST_G, H);
-  stress(ortho, k, rest + REST_D, H, M);
+  stress(1, LIT(0), rest + REST_D, H, M);
   forces3(M, rest + REST_G, f);
 }
 
@@ -204,11 +204,12 @@ INLINE void corotated_ebe(const struct cb_elements *E, corotated_pack_fn *pack, 
     for (int i = 0; i < 9; i++) state[i] = w[i];
 }
 
-/* Without a frame, or orthotropic; the others share cb_product_gradients. */
-INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, int ortho, const T *rest,
+/* Orthotropic; the isotropic ones share cb_product_gradients. */
+INLINE void corotated_ebe_product(const struct cb_elements *E, int policy, const T *rest,
                                   const T *state, const T *u, T *f) {
+  (void)E;
   if (NO_FRAME)
-    frameless_product(E->k, ortho, rest, u, f);
+    frameless_product(rest, u, f);
   else
     local_product(rest + REST_D, state, policy == POLICY_PRECOMPUTED ? rest + REST_G : state + 9, u,
                   f);
@@ -319,10 +320,10 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))                                                                \
   STORAGE_ASSEMBLED(ID, TAG, ID##_terms_##TAG, (ORTHO) ? TERMS_BLOCKS : TERMS_GRADIENTS)
 
-#define COROTATED_PRODUCT(ID, POLICY, ORTHO, TAG)                                                  \
+#define COROTATED_PRODUCT(ID, POLICY, TAG)                                                         \
   INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
                                      const T *u, T *f) {                                           \
-    corotated_ebe_product(E, POLICY, ORTHO, r, s, u, f);                                           \
+    corotated_ebe_product(E, POLICY, r, s, u, f);                                           \
   }                                                                                                \
   STORAGE_EBE_PRODUCT(ID, TAG)                                                                     \
   STORAGE_CLUSTER_PRODUCT(ID, TAG)
@@ -367,7 +368,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 #define COROTATED(ID, POLICY, EXACT)                                                               \
   COROTATED_FORM(ID, POLICY, EXACT, 0, iso)                                                        \
   COROTATED_FORM(ID, POLICY, EXACT, 1, ortho)                                                      \
-  COROTATED_PRODUCT(ID, POLICY, 1, ortho)                                                          \
+  COROTATED_PRODUCT(ID, POLICY, ortho)                                                             \
   COROTATED_PAPERS(ID, POLICY, EXACT)
 
 #define COROTATED_FORMS(ID, POLICY)                                                                \

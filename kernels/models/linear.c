@@ -10,8 +10,7 @@
 
 COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 0, iso)
 COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 1, ortho)
-COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, 0, iso)
-COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, 1, ortho)
+COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, ortho)
 
 static void assembled(struct cb_elements *E, size_t thread) {
   cb_team_barrier(E->team);
@@ -43,8 +42,10 @@ const struct cb_model CB_NAME(cb_model_linear) = {
     .policy = POLICY_PRECOMPUTED,
     .keeps_rest = true,
     .form = {
-        [CB_EBE] = {FORM_EBE(linear, iso, 0), FORM_EBE(linear, ortho, 0)},
-        [CB_EBE_CLUSTER] = {FORM_CLUSTER(linear, iso, 0), FORM_CLUSTER(linear, ortho, 0)},
+        [CB_EBE] = {{linear_ebe_update_iso, CB_NAME(cb_product_rest), 0},
+                    FORM_EBE(linear, ortho, 0)},
+        [CB_EBE_CLUSTER] = {{linear_cluster_update_iso, CB_NAME(cb_product_cluster_rest), 0},
+                            FORM_CLUSTER(linear, ortho, 0)},
         [CB_EBE_MATRIX] = {{linear_matrix_once_iso, CB_NAME(cb_product_matrix), 54},
                            {linear_matrix_once_ortho, CB_NAME(cb_product_matrix), 54}},
         [CB_CSR] = FORMS_CSR(linear_once, TERMS_GRADIENTS, TERMS_BLOCKS),

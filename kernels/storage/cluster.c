@@ -47,6 +47,13 @@ INLINE void by_gradients(const struct cb_elements *E, size_t slot, product_pack_
   gradients_product(E->k, E->state + 9 * slot, du, f);
 }
 
+/* The same where the world gradients are those of the rest shape (linear). */
+INLINE void by_rest(const struct cb_elements *E, size_t slot, product_pack_fn *model, const T *e,
+                    const T *du, T *f) {
+  (void)model, (void)e;
+  gradients_product(E->k, E->rest + slot * E->rest_numbers + REST_G, du, f);
+}
+
 INLINE void by_positions(const struct cb_elements *E, size_t slot, product_pack_fn *model,
                          const T *e, const T *du, T *f) {
   T w[9], scale = E->state[slot];
@@ -66,6 +73,11 @@ INLINE void by_model(const struct cb_elements *E, size_t slot, product_pack_fn *
 void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t thread,
                                            const void *u, void *y) {
   product_clusters(E, thread, u, y, by_gradients, false, NULL);
+}
+
+void CB_NAME(cb_product_cluster_rest)(const struct cb_elements *E, size_t thread, const void *u,
+                                      void *y) {
+  product_clusters(E, thread, u, y, by_rest, false, NULL);
 }
 
 void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,

@@ -160,5 +160,8 @@ void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t t
                                            const void *u, void *y);
 void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,
                                    void *y);
+/* The same with the rest data's gradients as world gradients. */
+void CB_NAME(cb_product_cluster_rest)(const struct cb_elements *E, size_t thread, const void *u,
+                                      void *y);
 
 #endif

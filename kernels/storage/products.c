@@ -12,6 +12,11 @@ INLINE void by_gradients(const struct cb_elements *E, const T *rest, const T *w,
   gradients_product(E->k, w, u, f);
 }
 
+INLINE void by_rest(const struct cb_elements *E, const T *rest, const T *w, const T *u, T *f) {
+  (void)w;
+  gradients_product(E->k, rest + REST_G, u, f);
+}
+
 /* For each edge (i, j): f_i += K_ij (u_j - u_i), f_j -= K_ij^T (u_j - u_i). */
 INLINE void by_matrix(const struct cb_elements *E, const T *rest, const T *K, const T *u, T *f) {
   (void)E, (void)rest;
@@ -34,6 +39,10 @@ INLINE void by_matrix(const struct cb_elements *E, const T *rest, const T *K, co
 void CB_NAME(cb_product_gradients)(const struct cb_elements *E, size_t thread, const void *u,
                                    void *y) {
   product_loop(E, thread, u, y, by_gradients);
+}
+
+void CB_NAME(cb_product_rest)(const struct cb_elements *E, size_t thread, const void *u, void *y) {
+  product_loop(E, thread, u, y, by_rest);
 }
 
 void CB_NAME(cb_product_matrix)(const struct cb_elements *E, size_t thread, const void *u,
