@@ -74,17 +74,20 @@ enum cb_status cb_verification_run(const struct cb_variant *const *variants, siz
                                    const struct cb_mesh *mesh, unsigned long seed,
                                    struct cb_verification *v) {
   struct samples s = {0};
-  struct cb_verification new = {count * CB_MATERIALS * CB_LAWS, NULL};
+  struct cb_verification new = {0};
   enum cb_status status = samples_make(mesh, seed, &s);
   if (!status) {
-    new.rows = calloc(new.count + 1, sizeof *new.rows);
+    new.rows = calloc(count * CB_MATERIALS * CB_LAWS + 1, sizeof *new.rows);
     if (!new.rows) status = cb_fail_memory("the verification");
   }
   cb_progress_begin("laws", (double)(count * CB_MATERIALS));
   for (size_t n = 0; n < count * CB_MATERIALS && !status; n++) {
     const struct cb_variant *variant = variants[n / CB_MATERIALS];
+    const int material = (int)(n % CB_MATERIALS);
     cb_progress((double)n, variant->model->name);
-    status = measure(variant, (int)(n % CB_MATERIALS), &s, new.rows + n *CB_LAWS);
+    if (!variant->model->form[variant->storage][material].update) continue; /* not offered */
+    status = measure(variant, material, &s, new.rows + new.count);
+    new.count += CB_LAWS;
   }
   cb_progress_end();
   samples_free(&s);

@@ -19,6 +19,8 @@
   FAMILY(X, polar_edges)                                                                           \
   FAMILY(X, polar_reflected)                                                                       \
   X(polar_exact)                                                                                   \
+  X(polar_tangent)                                                                                 \
+  X(polar_tangent_clamped)                                                                         \
   FAMILY(X, svd)
 
 #define DECLARE(stem) extern const struct cb_model CB_NAME(cb_model_##stem);
