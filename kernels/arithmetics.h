@@ -15,6 +15,7 @@ struct cb_element_functions {
                            struct cb_elements **);
   void (*free)(struct cb_elements *);
   void (*reset)(struct cb_elements *);
+  void (*tune)(struct cb_elements *, const struct cb_tuning *);
   size_t (*bytes)(const struct cb_elements *);
   const struct cb_pattern *(*pattern)(const struct cb_elements *);
   void (*blocks)(const struct cb_elements *, double *blocks);
@@ -40,6 +41,7 @@ struct cb_step_functions {
                                         struct cb_elements **);                                    \
   void cb_elements_free_##A(struct cb_elements *);                                                 \
   void cb_elements_reset_##A(struct cb_elements *);                                                \
+  void cb_elements_tune_##A(struct cb_elements *, const struct cb_tuning *);                       \
   size_t cb_elements_bytes_##A(const struct cb_elements *);                                        \
   const struct cb_pattern *cb_elements_pattern_##A(const struct cb_elements *);                    \
   void cb_elements_blocks_##A(const struct cb_elements *, double *);                               \

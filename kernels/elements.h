@@ -22,7 +22,9 @@
 enum cb_policy {
   POLICY_PRECOMPUTED,   /* w_j = R grad0_j: rest gradients, turned */
   POLICY_UPDATED,       /* w_j = cofactors of the current edges / (6 V0) */
-  POLICY_UPDATED_VOLUME /* w_j = cofactors of the current edges / (6 V) */
+  POLICY_UPDATED_VOLUME, /* w_j = cofactors of the current edges / (6 V) */
+  POLICY_LAZY            /* updated in the frame's axes when the stretch has moved, else kept
+                            there; stored as POLICY_UPDATED is */
 };
 
 /* In which axes an element keeps its rest shape. */
@@ -68,7 +70,9 @@ struct cb_elements {
   size_t bytes;                    /* of every array here but X and x */
   T k;                             /* lambda/mu = 2 nu/(1 - 2 nu) */
   T root, inverse_root, inverse_c; /* of c mu share / 6; of c: for rest data made of X */
-  S *x;                            /* ebe-recompute: positions of the last update, a node vector */
+  size_t frame_iterations;         /* struct cb_tuning */
+  T frame_tolerance, lazy;
+  S *x; /* ebe-recompute: positions of the last update, a node vector */
   /* assembled storages */
   struct cb_pattern *pattern;
   S *values; /* numbers of c K: [blocks][9], or (csr) rows of numbers */

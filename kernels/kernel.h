@@ -123,6 +123,7 @@ struct cb_model {
   unsigned laws[2];
   uint8_t policy, axes;                /* enums of kernels/elements.h */
   uint8_t memory_numbers;              /* kept per element from one update to the next */
+  uint8_t knobs;                       /* CB_KNOB_* that cb_operator_tune may turn */
   bool node_frames;                    /* one frame per node (node-warp) */
   bool keeps_rest;                     /* its products read rest data: they are stored */
   struct cb_form form[CB_STORAGES][2]; /* [storage][orthotropic] */
@@ -181,6 +182,15 @@ void cb_operator_update(struct cb_operator *op, const void *x, const void *v, do
 void cb_operator_product(const struct cb_operator *op, const void *u, void *y);
 /* Forget what warm-started frames remember: the next update starts cold. */
 void cb_operator_reset(struct cb_operator *op);
+/* Knobs of the models that have any (struct cb_model.knobs). */
+enum { CB_KNOB_FRAME = 1, CB_KNOB_LAZY = 2 };
+struct cb_tuning {
+  size_t frame_iterations; /* at most so many; 0: the model's own number */
+  double frame_tolerance;  /* a frame that moves by less in an iteration is done, 1 */
+  double lazy;             /* B of elements whose stretch moved by less is kept, 1 */
+};
+/* From the next update on. CB_INPUT if the model has not the knob that is turned. */
+enum cb_status cb_operator_tune(struct cb_operator *op, const struct cb_tuning *tuning);
 /* Bytes really allocated, node vectors not included. */
 size_t cb_operator_bytes(const struct cb_operator *op);
 const struct cb_variant *cb_operator_variant(const struct cb_operator *op);

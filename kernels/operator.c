@@ -88,6 +88,14 @@ void cb_operator_reset(struct cb_operator *op) {
   op->variant->arithmetic->elements->reset(op->elements);
 }
 
+enum cb_status cb_operator_tune(struct cb_operator *op, const struct cb_tuning *tuning) {
+  const bool frame = tuning->frame_iterations || tuning->frame_tolerance != 0;
+  const unsigned turned = (frame ? CB_KNOB_FRAME : 0) | (tuning->lazy != 0 ? CB_KNOB_LAZY : 0);
+  if (turned & ~op->variant->model->knobs) return CB_INPUT;
+  op->variant->arithmetic->elements->tune(op->elements, tuning);
+  return CB_OK;
+}
+
 size_t cb_operator_bytes(const struct cb_operator *op) {
   return op->variant->arithmetic->elements->bytes(op->elements);
 }

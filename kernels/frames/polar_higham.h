@@ -10,6 +10,8 @@
 #ifndef CB_FRAME_POLAR_HIGHAM_H
 #define CB_FRAME_POLAR_HIGHAM_H
 
+#include <stddef.h>
+
 #include "kernels/frames/inversion.h"
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns det Q,
@@ -37,6 +39,29 @@ INLINE T orthogonal_higham(const T *F, T *Q) {
     cofactor3(Q, C);
     T turn = LIT(1.0 / (1 << 2 * n)) / dot3(Q, C);
     for (int i = 0; i < 9; i++) Q[i] = Q[i] + turn * C[i];
+  }
+  return sign;
+}
+
+/* Q := the same by at most `iterations` scaled ones, each of length sqrt(3), fewer if one
+ * moves none of the lanes by more than tolerance: for measuring what an iteration is worth. */
+INLINE T orthogonal_higham_tuned(const T *F, size_t iterations, T tolerance, T *Q) {
+  T C[9], sign = LIT(0);
+  for (int i = 0; i < 9; i++) Q[i] = F[i];
+  for (size_t n = 0; n < iterations; n++) {
+    T next[9], far = LIT(0);
+    cofactor3(Q, C);
+    if (n == 0) sign = SELECT(dot3(Q, C) < LIT(0), LIT(-1), LIT(1));
+    T turn = sign * SQRT(square9(Q) / square9(C));
+    for (int i = 0; i < 9; i++) next[i] = Q[i] + turn * C[i];
+    T scale = SQRT(LIT(3)) * RSQRT(square9(next));
+    for (int i = 0; i < 9; i++) {
+      next[i] = scale * next[i];
+      T d = ABS(next[i] - Q[i]);
+      far = SELECT(d > far, d, far);
+      Q[i] = next[i];
+    }
+    if (!ANY(far > tolerance)) break;
   }
   return sign;
 }

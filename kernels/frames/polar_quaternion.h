@@ -58,26 +58,62 @@ INLINE void quaternion_turn(const T *K, T *q) {
   for (int i = 0; i < 4; i++) q[i] = keep * q[i] + turn * p[i];
 }
 
-/* R := rotation of F, q[4] := its quaternion for the next call.
- * in/out  q[4]  last result, or all zero: then the first guess is the full
- *               decomposition (a cold guess can be far off after few turns) */
-INLINE void frame_polar_quaternion(const T *F, T *q, T *R) {
-  MASK cold = dot4(q, q) == LIT(0);
-  if (ANY(cold)) {
-    T start[4];
-    frame_polar_higham(F, R);
-    quaternion_from(R, start);
-    for (int i = 0; i < 4; i++) q[i] = SELECT(cold, start[i], q[i]);
-  }
+/* Horn's matrix of F, for quaternion_turn. */
+INLINE void horn_matrix(const T *F, T *K) {
   T xw = F[7] - F[5], yw = F[2] - F[6], zw = F[3] - F[1];
   T xy = F[1] + F[3], xz = F[2] + F[6], yz = F[5] + F[7];
   T plus = F[0] + F[4], minus = F[0] - F[4];
-  T K[16] = {plus + F[8],   xw, yw, zw, xw, minus - F[8], xy, xz, yw, xy,
-             -minus - F[8], yz, zw, xz, yz, F[8] - plus};
-  for (int n = 0; n < QUATERNION_TURNS; n++) quaternion_turn(K, q);
+  T all[16] = {plus + F[8],   xw, yw, zw, xw, minus - F[8], xy, xz, yw, xy,
+               -minus - F[8], yz, zw, xz, yz, F[8] - plus};
+  for (int i = 0; i < 16; i++) K[i] = all[i];
+}
+
+/* Where q is all zero: the full decomposition (a cold guess can be far off after few
+ * turns). */
+INLINE void quaternion_warm(const T *F, T *q, T *R) {
+  MASK cold = dot4(q, q) == LIT(0);
+  if (!ANY(cold)) return;
+  T start[4];
+  frame_polar_higham(F, R);
+  quaternion_from(R, start);
+  for (int i = 0; i < 4; i++) q[i] = SELECT(cold, start[i], q[i]);
+}
+
+INLINE void quaternion_end(T *q, T *R) {
   T inverse = RSQRT(dot4(q, q));
   for (int i = 0; i < 4; i++) q[i] = q[i] * inverse;
   quaternion_matrix(q, R);
+}
+
+/* R := rotation of F, q[4] := its quaternion for the next call.
+ * in/out  q[4]  last result, or all zero: a cold start */
+INLINE void frame_polar_quaternion(const T *F, T *q, T *R) {
+  T K[16];
+  quaternion_warm(F, q, R);
+  horn_matrix(F, K);
+  for (int n = 0; n < QUATERNION_TURNS; n++) quaternion_turn(K, q);
+  quaternion_end(q, R);
+}
+
+/* The same by at most so many turns, fewer if one moves none of the lanes' quaternions by
+ * more than tolerance. */
+INLINE void frame_polar_quaternion_tuned(const T *F, size_t turns, T tolerance, T *q, T *R) {
+  T K[16];
+  quaternion_warm(F, q, R);
+  horn_matrix(F, K);
+  for (size_t n = 0; n < turns; n++) {
+    T last[4], far = LIT(0);
+    for (int i = 0; i < 4; i++) last[i] = q[i];
+    quaternion_turn(K, q);
+    T inverse = RSQRT(dot4(q, q));
+    for (int i = 0; i < 4; i++) {
+      q[i] = q[i] * inverse;
+      T d = ABS(q[i] - last[i]);
+      far = SELECT(d > far, d, far);
+    }
+    if (!ANY(far > tolerance)) break;
+  }
+  quaternion_end(q, R);
 }
 
 #endif

@@ -3,7 +3,8 @@
  *   SPARSE          1 if the frame makes local gradients triangular (qr), else 0
  *   NO_FRAME        1 if R = I always (linear), else 0
  *   REFLECTS        defined if R may be a reflection (polar-reflected)
- *   FRAME_ROTATION(e, F, memory, R)  the frame from edges and F; FRAME_PACK and
+ *   FRAME_ROTATION(e, F, memory, R)  the frame from edges and F (and E, the elements, for
+ *                   what is tuned); FRAME_PACK and
  *                   FRAME_WORLD, with the contracts of frame_pack and frame_world
  *                   below, where something else is to be done than they do
  * and then lists its models with COROTATED_FAMILY or COROTATED_MODEL.
@@ -15,8 +16,8 @@
 #ifdef FRAME_ROTATION
 /* Orthotropic elements call the frame, isotropic ones have it inlined, which is
  * 10 % faster for the iterative ones: thirty copies would take minutes to build. */
-OUTLINE void frame_called(const T *e, const T *F, T *memory, T *R) {
-  (void)e, (void)F, (void)memory;
+OUTLINE void frame_called(const struct cb_elements *E, const T *e, const T *F, T *memory, T *R) {
+  (void)E, (void)e, (void)F, (void)memory;
   FRAME_ROTATION(e, F, memory, R);
 }
 #endif
@@ -36,7 +37,7 @@ INLINE void frame_world(const struct cb_elements *E, int policy, int exact, int 
   (void)E, (void)exact, (void)own, (void)memory, (void)L;
   deformation_gradient(policy, rest, e, F);
   if (ortho)
-    frame_called(own, F, memory, R);
+    frame_called(E, own, F, memory, R);
   else
     FRAME_ROTATION(own, F, memory, R);
   STAGE(STAGE_FORCE);
@@ -87,6 +88,42 @@ INLINE void world_gradients(int policy, bool sparse, int frameless, const T *res
 #endif
   for (int i = 0; i < 9; i++) w[i] = scale * w[i];
 }
+
+#ifdef LAZY
+/* What a lazy element remembers: local gradients b[9], and the stretch S[9] that they
+ * were made at; behind what the frame does. In ebe-paper B is where it was. */
+enum { LAZY_B, LAZY_S = 9, LAZY_NUMBERS = 18 };
+
+/* Where the stretch R^T F has moved by more than E->lazy since then, or never was
+ * there: remembered anew. */
+INLINE MASK lazy_moved(const struct cb_elements *E, const T *R, const T *F, T *memory) {
+  T stretch[9], *last = memory + LAZY_S, far = LIT(0), any = LIT(0);
+  multiply3_tn(R, F, stretch);
+  for (int i = 0; i < 9; i++) {
+    T d = ABS(stretch[i] - last[i]);
+    far = SELECT(d > far, d, far);
+    any = any + ABS(last[i]);
+  }
+  MASK moved = (far > E->lazy) | (any == LIT(0));
+  for (int i = 0; i < 9; i++) last[i] = SELECT(moved, stretch[i], last[i]);
+  return moved;
+}
+
+/* w := world gradients, from those remembered in the frame's axes. */
+INLINE void lazy_gradients(const struct cb_elements *E, const T *rest, const T *e, const T *R,
+                           const T *F, T *memory, T *w) {
+  MASK moved = lazy_moved(E, R, F, memory);
+  T *b = memory + LAZY_B, now[3];
+  if (ANY(moved)) {
+    world_gradients(POLICY_UPDATED, 0, 0, rest, e, R, w);
+    for (int j = 0; j < 9; j += 3) {
+      apply3_transposed(R, w + j, now);
+      for (int i = 0; i < 3; i++) b[j + i] = SELECT(moved, now[i], b[j + i]);
+    }
+  }
+  for (int j = 0; j < 9; j += 3) apply3(R, b + j, w + j);
+}
+#endif
 
 /* M := -h s M - stress of the velocity gradient, orthotropic: force and product in
  * one go. */
@@ -160,7 +197,11 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
     T F[9], L[3];
     FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
     STAGE(STAGE_B);
+#ifdef LAZY
+    lazy_gradients(E, rest, e, R, F, memory, w);
+#else
     world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
+#endif
     STAGE(STAGE_FORCE);
     world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
     return;
@@ -251,7 +292,14 @@ INLINE void corotated_paper(const struct cb_elements *E, int policy, int exact, 
   T *R = state, P[9], y[6], out[12];
   FRAME_PACK(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
   STAGE(STAGE_B);
-  if (policy != POLICY_PRECOMPUTED) {
+#ifdef LAZY
+  T F[9];
+  deformation_gradient(policy, rest, e, F);
+  const bool makes = ANY(lazy_moved(E, R, F, memory));
+#else
+  const bool makes = policy != POLICY_PRECOMPUTED;
+#endif
+  if (makes) {
     if (SPARSE)
       paper_b_qr(policy == POLICY_UPDATED_VOLUME, rest[REST_W], y, state + 9);
     else
@@ -286,7 +334,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 #define CLUSTER_DRIVE_ortho drive_update_clusters
 
 /* Functions of model ID with the element functions bound to constants. */
-#define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
+#define COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                             \
   INLINE void ID##_whole_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
                                const T *ev, T h, T *m, T *R, T *w, T *f) {                         \
     corotated_pack(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, R, w, f);                         \
@@ -304,6 +352,11 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
     corotated_ebe(E, ORTHO ? ID##_pack_##TAG : ID##_whole_##TAG, POLICY, ORTHO, r, e, own, ev, h,  \
                   m, s, f);                                                                        \
   }                                                                                                \
+  STORAGE_EBE(ID, TAG)                                                                             \
+  STORAGE_CLUSTER(ID, TAG, CLUSTER_DRIVE_##TAG, ID##_cluster_##TAG)
+
+#define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
+  COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                                   \
   INLINE void ID##_blocks_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own, \
                                 const T *ev, T h, T *m, T *X, T *f) {                              \
     corotated_blocks(E, ID##_pack_##TAG, ORTHO, r, e, own, ev, h, m, X, f);                        \
@@ -315,8 +368,6 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
     else                                                                                           \
       corotated_gradients(E, ID##_pack_##TAG, r, e, own, ev, h, m, X, f);                          \
   }                                                                                                \
-  STORAGE_EBE(ID, TAG)                                                                             \
-  STORAGE_CLUSTER(ID, TAG, CLUSTER_DRIVE_##TAG, ID##_cluster_##TAG)                                \
   STORAGE_BLOCKS(ID, TAG, !(ORTHO))                                                                \
   STORAGE_ASSEMBLED(ID, TAG, ID##_terms_##TAG, (ORTHO) ? TERMS_BLOCKS : TERMS_GRADIENTS)
 
@@ -399,6 +450,35 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                                                   .axes = AXES,                                    \
                                                   .memory_numbers = MEMORY,                        \
                                                   .form = COROTATED_FORMS(ID, POLICY)};
+
+/* A model of isotropic elements for which neither speed in clusters nor assembling is
+ * of interest: ebe, and scalar ebe-paper. */
+#define COROTATED_TUNED(ID, NAME, SUMMARY, SOURCE, POLICY, MEMORY, KNOBS, LAWS_ISO)                \
+  COROTATED_PACKS(ID, POLICY, 0, 0, iso)                                                           \
+  COROTATED_TUNED_PAPER(ID, POLICY)                                                                \
+  const struct cb_model CB_NAME(cb_model_##ID) = {                                                 \
+      .name = NAME,                                                                                \
+      .summary = SUMMARY,                                                                          \
+      .source = SOURCE,                                                                            \
+      .laws = {LAWS_ISO, 0},                                                                       \
+      .policy = (POLICY) == POLICY_PRECOMPUTED ? POLICY_PRECOMPUTED : POLICY_UPDATED,              \
+      .axes = SPARSE ? AXES_EDGES : AXES_WORLD,                                                    \
+      .memory_numbers = MEMORY,                                                                    \
+      .knobs = KNOBS,                                                                              \
+      .form = {[CB_EBE_PAPER] = COROTATED_TUNED_FORM(ID, POLICY),                                  \
+               [CB_EBE] = {FORM_EBE_SHARED(ID, iso, 9), {NULL, NULL, 0}},                          \
+               [CB_EBE_CLUSTER] = {FORM_CLUSTER_SHARED(ID, iso), {NULL, NULL, 0}}}};
+#if CB_LANES == 1
+#define COROTATED_TUNED_PAPER(ID, POLICY) COROTATED_PAPER(ID, POLICY, 0, 0, iso)
+#define COROTATED_TUNED_FORM(ID, POLICY)                                                           \
+  { FORM_PAPER(ID, iso, COROTATED_STATE_PAPER(POLICY)), { NULL, NULL, 0 } }
+#else
+#define COROTATED_TUNED_PAPER(ID, POLICY)
+#define COROTATED_TUNED_FORM(ID, POLICY)                                                           \
+  {                                                                                                \
+    {NULL, NULL, 0}, { NULL, NULL, 0 }                                                             \
+  }
+#endif
 
 /* The three policies of one frame. UPDATED: laws of both updated ones, for
  * either material. */

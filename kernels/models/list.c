@@ -18,6 +18,10 @@
   FAMILY(X, polar_quaternion)                                                                      \
   FAMILY(X, polar_edges)                                                                           \
   FAMILY(X, polar_reflected)                                                                       \
+  X(polar_higham_tuned)                                                                            \
+  X(polar_quaternion_tuned)                                                                        \
+  X(qr_lazy)                                                                                       \
+  X(polar_closed_lazy)                                                                             \
   X(polar_exact)                                                                                   \
   X(polar_tangent)                                                                                 \
   X(polar_tangent_clamped)                                                                         \
@@ -29,8 +33,9 @@ MODELS(DECLARE)
 static const struct cb_model *const models[] = {MODELS(LIST) NULL};
 
 static const struct cb_element_functions elements = {
-    CB_NAME(cb_elements_create), CB_NAME(cb_elements_free),    CB_NAME(cb_elements_reset),
-    CB_NAME(cb_elements_bytes),  CB_NAME(cb_elements_pattern), CB_NAME(cb_elements_blocks)};
+    CB_NAME(cb_elements_create), CB_NAME(cb_elements_free),  CB_NAME(cb_elements_reset),
+    CB_NAME(cb_elements_tune),   CB_NAME(cb_elements_bytes), CB_NAME(cb_elements_pattern),
+    CB_NAME(cb_elements_blocks)};
 
 #ifndef CB_NEEDS
 #define CB_NEEDS ""

@@ -360,6 +360,12 @@ void CB_NAME(cb_elements_reset)(struct cb_elements *E) {
   memset(E->memory, 0, E->packs->slots * E->memory_numbers * sizeof(T));
 }
 
+void CB_NAME(cb_elements_tune)(struct cb_elements *E, const struct cb_tuning *tuning) {
+  E->frame_iterations = tuning->frame_iterations;
+  E->frame_tolerance = (T)splat((S)tuning->frame_tolerance);
+  E->lazy = (T)splat((S)tuning->lazy);
+}
+
 size_t CB_NAME(cb_elements_bytes)(const struct cb_elements *E) { return E->bytes; }
 
 const struct cb_pattern *CB_NAME(cb_elements_pattern)(const struct cb_elements *E) {

@@ -1,0 +1,99 @@
+/* qr_element.h - frame, stretch and stress of one pack by Gram-Schmidt on the current
+ * edges: what the QR models share.
+ * Source: Nesme, Payan, Faure 2005, sections 2.1, 3.1; qr_gradient: this project.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_QR_ELEMENT_H
+#define CB_QR_ELEMENT_H
+
+#include "kernels/frames/qr.h"
+#include "kernels/models/strain.h"
+
+/* F[9] := F Q0. Rest shapes are kept in their own edge frame Q0: rest gradients are
+ * triangular where the vertices have their own order, b: xyz, c: 0yz, d: 00z. */
+INLINE void qr_gradient_of_edges(const struct cb_elements *E, int policy, const T *rest, const T *e,
+                                 T *F) {
+  const T *g = rest + REST_G;
+  if (!in_own_order(E)) {
+    deformation_gradient(policy, rest, e, F);
+    return;
+  }
+  for (int i = 0; i < 3; i++) {
+    F[3 * i] = e[i] * g[0];
+    F[3 * i + 1] = e[i] * g[1] + e[3 + i] * g[4];
+    F[3 * i + 2] = e[i] * g[2] + e[3 + i] * g[5] + e[6 + i] * g[8];
+  }
+  if (policy == POLICY_PRECOMPUTED)
+    for (int i = 0; i < 9; i++) F[i] = rest[REST_EDGE] * F[i];
+}
+
+/* F Q0 = R U, U[6] = U11 U12 U22 U13 U23 U33 upper triangular; from edges in local
+ * axes, y, where the vertices have their own order. */
+INLINE void qr_stretch(const struct cb_elements *E, int policy, const T *rest, const T *e,
+                       const T *R, const T *y, T *U) {
+  const T *g = rest + REST_G;
+  if (!in_own_order(E)) {
+    T F[9];
+    qr_gradient_of_edges(E, policy, rest, e, F);
+    for (int n = 0; n < 6; n++) {
+      static const uint8_t row[6] = {0, 0, 1, 0, 1, 2}, column[6] = {0, 1, 1, 2, 2, 2};
+      U[n] = LIT(0);
+      for (int i = 0; i < 9; i += 3) U[n] = U[n] + R[i + row[n]] * F[i + column[n]];
+    }
+    return;
+  }
+  T s[6];
+  for (int i = 0; i < 6; i++) s[i] = policy == POLICY_PRECOMPUTED ? rest[REST_EDGE] * y[i] : y[i];
+  U[0] = s[0] * g[0];
+  U[1] = s[0] * g[1] + s[1] * g[4];
+  U[2] = s[2] * g[4];
+  U[3] = s[0] * g[2] + s[1] * g[5] + s[3] * g[8];
+  U[4] = s[2] * g[5] + s[4] * g[8];
+  U[5] = s[5] * g[8];
+}
+
+INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
+  T strain[6] = {U[0] - LIT(1), U[2] - LIT(1), U[5] - LIT(1), U[1], U[4], U[3]};
+  stress_voigt(ortho, k, rest + REST_D, strain, P);
+}
+
+/* P's lower triangle := what makes Q P the gradient of W(U): the usual method
+ * drops how Q turns with x, and with that the balance of torques.
+ *   p32 = (S23 U33 - S33 U23) / U22
+ *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
+ *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11 */
+INLINE void qr_gradient(const T *U, T *P) {
+  T first = LIT(1) / U[0], second = LIT(1) / U[2];
+  T s12 = P[1], s13 = P[2], s22 = P[4], s23 = P[5], s33 = P[8];
+  P[7] = (s23 * U[5] - s33 * U[4]) * second;
+  P[6] = (s13 * U[5] - s33 * U[3] - P[7] * U[1]) * first;
+  P[3] = (s12 * U[2] + s13 * U[4] - s22 * U[1] - s23 * U[3]) * first;
+}
+
+INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
+                    const T *e, const T *own, T *memory, T *R, T *P, T *y) {
+  T U[6];
+  (void)memory;
+  frame_qr(own, R, y);
+  STAGE(STAGE_FORCE);
+  qr_stretch(E, policy, rest, e, R, y, U);
+  qr_stress(E->k, ortho, rest, U, P);
+  if (exact) qr_gradient(U, P);
+}
+
+INLINE void qr_world(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
+                     const T *e, const T *own, T *memory, T *R, T *F, T *L) {
+  T y[6];
+  (void)memory;
+  if (!exact) {
+    frame_qr_axes(own, R, y);
+    STAGE(STAGE_FORCE);
+    if (policy != POLICY_PRECOMPUTED) qr_gradient_of_edges(E, policy, rest, e, F);
+    return;
+  }
+  T P[9];
+  qr_pack(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
+  L[0] = P[3] - P[1], L[1] = P[6] - P[2], L[2] = P[7] - P[5];
+}
+
+#endif
