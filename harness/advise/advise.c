@@ -93,7 +93,7 @@ static enum cb_status try_model(struct explorer *e, struct cb_advice *a, const c
                                 const struct cb_arithmetic *arithmetic) {
   const struct cb_variant *v = variant_of(model, arithmetic);
   if (!v) return CB_OK;
-  struct cb_candidate c = {.trial = {v, 1, 0, e->body->scene->step}};
+  struct cb_candidate c = {.trial = {.variant = v, .threads = 1, .step = e->body->scene->step}};
   size_t best = a->tried_count;
   cb_variant_name(v, c.name);
   say(e, c.name);

@@ -4,6 +4,7 @@
 #include "harness/scene/run.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,6 +69,8 @@ static enum cb_status open_way(const struct cb_body *body, const struct cb_trial
   enum cb_status status =
       cb_job_create(trial->variant, trial->threads, &body->at, &w->step, &w->job);
   if (status) return status;
+  if (cb_operator_tune(w->job.op, &trial->tuning) != CB_OK)
+    return cb_fail(CB_INPUT, "%s has not what is to be tuned", w->job.name);
   w->force = aligned_alloc(64, w->job.vector_bytes);
   w->x = malloc(3 * nodes * sizeof *w->x);
   w->v = malloc(3 * nodes * sizeof *w->v);
@@ -214,16 +217,33 @@ enum cb_status cb_body_run(const struct cb_body *body, const struct cb_trial *tr
   return status;
 }
 
-enum cb_status cb_body_truth(const struct cb_body *body, struct cb_outcome *truth) {
-  const struct cb_trial trial = {cb_variant_find("polar-exact/bcsr/f64"), 1, 0,
-                                 body->scene->step / 10};
-  enum cb_status status = cb_body_run(body, &trial, truth);
+static enum cb_status find_truth(const struct cb_body *body, const struct cb_trial *trial,
+                                 struct cb_outcome *truth) {
+  enum cb_status status = cb_body_run(body, trial, truth);
   if (!status && !truth->finite)
     status = cb_fail(CB_NUMERIC,
                      "scene '%s' has no truth: it breaks down at a tenth of its step; "
                      "give it a shorter one",
                      body->scene->name);
   return status;
+}
+
+enum cb_status cb_body_truth(const struct cb_body *body, struct cb_outcome *truth) {
+  const struct cb_trial trial = {.variant = cb_variant_find("polar-exact/bcsr/f64"),
+                                 .threads = 1,
+                                 .step = body->scene->step / 10};
+  return find_truth(body, &trial, truth);
+}
+
+enum cb_status cb_body_truth_iterated(const struct cb_body *body, size_t threads,
+                                      struct cb_outcome *truth) {
+  char name[CB_NAME];
+  snprintf(name, sizeof name, "polar-exact/ebe-cluster/%s", cb_bench_lanes(sizeof(double))->name);
+  const struct cb_trial trial = {.variant = cb_variant_find(name),
+                                 .threads = threads,
+                                 .iterations = 200,
+                                 .step = body->scene->step / 10};
+  return find_truth(body, &trial, truth);
 }
 
 double cb_outcome_error(const struct cb_outcome *outcome, const struct cb_outcome *truth,

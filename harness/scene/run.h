@@ -11,8 +11,9 @@
 struct cb_trial {
   const struct cb_variant *variant;
   size_t threads;
-  size_t iterations; /* of conjugate gradients; 0: solved directly (bcsr/f64 only) */
-  double step;       /* s; made shorter where it does not divide a tenth of the duration */
+  size_t iterations;       /* of conjugate gradients; 0: solved directly (bcsr/f64 only) */
+  double step;             /* s; made shorter where it does not divide a tenth of the duration */
+  struct cb_tuning tuning; /* all zero: the model's own */
 };
 
 enum { CB_SAMPLES = 10 }; /* looks at the body, at every tenth of the duration */
@@ -38,6 +39,10 @@ enum cb_status cb_body_run(const struct cb_body *body, const struct cb_trial *tr
 /* The scene's truth: polar-exact, which has an energy, no torque and no order, solved
  * directly at a tenth of the step. */
 enum cb_status cb_body_truth(const struct cb_body *body, struct cb_outcome *truth);
+/* The same where direct solutions would take too long: 200 iterations in double, on all
+ * those threads. */
+enum cb_status cb_body_truth_iterated(const struct cb_body *body, size_t threads,
+                                      struct cb_outcome *truth);
 
 /* Largest distance of a point from its true place at any look, of the body's size;
  * and largest difference of the energies, of the largest true one. NaN where the outcome is
