@@ -94,6 +94,8 @@ static void b_costs_what_the_paper_says(void **state) {
         updated++, assert_counts(name, *b, qr ? 14 : 72, qr ? 5 : 60, 0, 0);
       else if (ends_with(name, "-updated-volume"))
         assert_counts(name, *b, qr ? 16 : 87, qr ? 5 : 62, 1, 0);
+      else if (ends_with(name, "-lazy")) /* not moved: F, and the stretch to see that */
+        assert_counts(name, *b, 54, 54, 0, 0);
       else
         assert_counts(name, *b, 0, 0, 0, 0);
     }
@@ -162,6 +164,7 @@ static void operations_belong_to_their_stage(void **state) {
   for (const struct cb_model *const *m = scene_counted()->models; *m; m++)
     for (int ortho = 0; ortho < 2; ortho++) {
       struct cb_counts reference[STAGES], other[STAGES], update[STAGES], product[STAGES];
+      if (!(*m)->form[CB_EBE][ortho].update) continue;
       count_variant(&s, (*m)->name, CB_EBE, ortho, reference, other);
       for (int storage = 0; storage < CB_STORAGES; storage++) {
         bool updated_b = strstr((*m)->name, "-updated") && storage == CB_EBE_PAPER;
@@ -203,7 +206,7 @@ static void counts_do_not_depend_on_the_shape(void **state) {
     for (int ortho = 0; ortho < 2; ortho++)
       for (int storage = 0; storage < CB_STORAGES; storage++) {
         struct cb_counts a[2][STAGES], b[2][STAGES];
-        if (!(*m)->form[storage][ortho].update) continue;
+        if (!(*m)->form[storage][ortho].update || (*m)->knobs) continue; /* as far as needed */
         count_variant(&one, (*m)->name, (enum cb_storage)storage, ortho, a[0], a[1]);
         count_variant(&two, (*m)->name, (enum cb_storage)storage, ortho, b[0], b[1]);
         assert_memory_equal(a, b, sizeof a);

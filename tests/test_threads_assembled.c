@@ -129,14 +129,14 @@ static void threads_agree(void **state) {
   gsl_rng_free(rng);
 }
 
-/* Every model offers each assembled storage if it offers one, for both materials. */
+/* Every model offers each assembled storage if it offers one. */
 static void assembled_storages_come_together(void **state) {
   (void)state;
   for (const struct cb_arithmetic *const *a = cb_arithmetics; *a; a++)
     for (const struct cb_model *const *m = (*a)->models; *m; m++)
       for (int storage = CB_CSR; storage < CB_STORAGES; storage++)
         for (int ortho = 0; ortho < 2; ortho++)
-          assert_true(!(*m)->form[storage][ortho].update == !(*m)->form[CB_BCSR][0].update);
+          assert_true(!(*m)->form[storage][ortho].update == !(*m)->form[CB_BCSR][ortho].update);
 }
 
 int main(void) {

@@ -13,16 +13,16 @@ struct cb_verb {
   enum cb_status (*run)(int argc, char **argv); /* argv[0] = "corobench NAME" */
 };
 extern const struct cb_verb cb_verb_list, cb_verb_verify, cb_verb_ops, cb_verb_force, cb_verb_bench,
-    cb_verb_machine, cb_verb_scene, cb_verb_advise, cb_verb_trade;
+    cb_verb_machine, cb_verb_scene, cb_verb_advise, cb_verb_trade, cb_verb_truth;
 
 /* Options that several verbs share; a verb takes those of its mask. */
 enum {
-  CB_OPT_VARIANT = 1, /* --variant GLOB, repeatable: on model/storage/arithmetic; a glob without
-                         a slash is held against the model alone */
-  CB_OPT_MESH = 2,    /* --mesh FILE */
-  CB_OPT_FORMAT = 4,  /* --format table|csv|json */
-  CB_OPT_OUTPUT = 8,  /* --output DIR */
-  CB_OPT_SEED = 16,   /* --seed N, default 2005 */
+  CB_OPT_VARIANT = 1,  /* --variant GLOB, repeatable: on model/storage/arithmetic; a glob without
+                          a slash is held against the model alone */
+  CB_OPT_MESH = 2,     /* --mesh FILE */
+  CB_OPT_FORMAT = 4,   /* --format table|csv|json */
+  CB_OPT_OUTPUT = 8,   /* --output DIR */
+  CB_OPT_SEED = 16,    /* --seed N, default 2005 */
   CB_OPT_THREADS = 32, /* --threads N[,N...], repeatable */
   CB_OPT_SCENE = 64    /* SCENE, the one word that is no option; must be there */
 };

@@ -137,8 +137,13 @@ INLINE void tangent_blocks(const struct cb_elements *E, bool clamped, const T *r
       .policy = POLICY_PRECOMPUTED,                                                                \
       .form = {[CB_EBE] = {FORM_EBE(ID, iso, 15), {NULL, NULL, 0}},                                \
                [CB_EBE_CLUSTER] = {FORM_CLUSTER(ID, iso, 15), {NULL, NULL, 0}},                    \
+               [CB_CSR] = {{ID##_assembled_update_iso, CB_NAME(cb_product_csr), TERMS_BLOCKS},     \
+                           {NULL, NULL, 0}},                                                       \
                [CB_BCSR] = {{ID##_assembled_update_iso, CB_NAME(cb_product_bcsr), TERMS_BLOCKS},   \
-                            {NULL, NULL, 0}}}};
+                            {NULL, NULL, 0}},                                                      \
+               [CB_BCSR_SYMMETRIC] = {                                                             \
+                   {ID##_assembled_update_iso, CB_NAME(cb_product_bcsr_symmetric), TERMS_BLOCKS},  \
+                   {NULL, NULL, 0}}}};
 
 #define LAWS_POLAR                                                                                 \
   (CB_KEEPS(CB_LAW_ROTATION) | CB_KEEPS(CB_LAW_NEWTON) | CB_KEEPS(CB_LAW_SYMMETRIC) | LAWS_EULER | \
