@@ -80,6 +80,15 @@ bench: all ## measure the figures and draw them (QUICK=1: in under a minute)
 	@$(BUILD)/corobench bench $(if $(QUICK),--quick) --output results/latest
 	@plots/draw.sh results/latest
 
+truth: all ## hold the models against closed forms and conservation; fails when one is missed
+	@$(BUILD)/corobench truth --output results/latest
+	@plots/draw.sh results/latest
+
+SCENE = scenes/block.json
+trade: all ## error against time of every setting on a scene (SCENE=FILE), drawn
+	@$(BUILD)/corobench trade $(SCENE) --output results/latest
+	@plots/draw.sh results/latest
+
 RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
 plots: | $(FIRST) ## draw the figures again from stored results, without measuring (RESULTS=DIR)
 	@plots/draw.sh $(RESULTS)
@@ -116,7 +125,7 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races verify bench truth trade plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -129,6 +138,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench plots help clean always
+.PHONY: all programs setup test sanitize races verify bench truth trade plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

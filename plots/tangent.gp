@@ -18,8 +18,8 @@ do for [kind in "svg png"] {
   set format xy "10^{%T}"
   set xlabel "strain"
   set ylabel "|K u + df| / |df|, the worst of 200 elements"
-  set yrange [1e-10:20]
-  set key bottom right noenhanced
+  set yrange [1e-12:1e3] # room for the key
+  set key top left noenhanced
   plot for [i = 1:words(models)] rows(word(models, i)) using "strain":"error" with linespoints \
     linestyle i title word(models, i)
   unset output

@@ -21,8 +21,11 @@ static enum cb_status make_mesh(const struct cb_scene *s, double resolution, str
     return status ? status : cb_order_apply(mesh);
   }
   for (int i = 0; i < 3; i++) cells[i] = (size_t)fmax(1, round(resolution * (double)s->cells[i]));
-  return cb_mesh_grid(cells[0], cells[1], cells[2],
-                      s->cell * (double)s->cells[0] / (double)cells[0], mesh);
+  enum cb_status status = cb_mesh_grid(cells[0], cells[1], cells[2], 1, mesh);
+  /* of the same size at every resolution, so its cells are not always cubes */
+  for (size_t i = 0; !status && i < 3 * mesh->nodes; i++)
+    mesh->X[i] *= s->cell * (double)s->cells[i % 3] / (double)cells[i % 3];
+  return status;
 }
 
 static bool chosen(const struct cb_selection *where, const struct cb_box *box, const double *X) {

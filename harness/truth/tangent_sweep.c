@@ -36,7 +36,8 @@ static void fill(struct work *w, unsigned long seed) {
 static double worst_error(struct work *w, struct cb_probe *probe, double strain) {
   const struct cb_patches *p = &w->patches;
   const size_t numbers = 3 * p->mesh.nodes;
-  const double e = 0x1p-14; /* errors of e^2 and of the forces' rounding to double by e: 4e-9 */
+  const double e =
+      0x1p-20; /* errors: e^2 of truncation, and rounding of the forces to double by e */
   double worst = 0;
   for (size_t i = 0; i < numbers; i++)
     w->x[i] = p->mesh.X[i] + strain * w->strain[i] + e * w->direction[i];

@@ -1,0 +1,338 @@
+/* Scene files: what is refused, and in which words; what is read; and what a body made
+ * of one does.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "harness/error.h"
+#include "harness/scene/run.h"
+#include "harness/verify/counter.h"
+#include "tests/process.h"
+
+/* ---- reading --------------------------------------------------------------------- */
+
+static const char *const GOOD =
+    "{\n"
+    " \"about\": \"a block\",\n"
+    " \"geometry\": {\"block\": {\"cells\": [2, 2, 3], \"cell_m\": 0.1}},\n"
+    " \"material\": {\"young_pa\": 1e5, \"poisson\": 0.3, \"density_kg_m3\": 1000},\n"
+    " \"fixed\": [{\"face\": \"z-\"}],\n"
+    " \"loads\": [{\"low\": [0, 0, 1], \"high\": [1, 1, 1],\n"
+    "            \"force_n\": [1, 0, 0]}],\n"
+    " \"step_s\": 0.001,\n"
+    " \"duration_s\": 0.1,\n"
+    " \"needs\": {\"newton\": true, \"torque\": 1e-3}\n"
+    "}\n";
+
+/* GOOD with the first `from` replaced by `to`, as a file. */
+static const char *scene_file(const char *from, const char *to) {
+  const char *path = temporary_path("scene.json"), *at = strstr(GOOD, from);
+  FILE *f = fopen(path, "w");
+  assert_non_null(at);
+  fprintf(f, "%.*s%s%s", (int)(at - GOOD), GOOD, to, at + strlen(from));
+  fclose(f);
+  return path;
+}
+
+static void a_good_scene_is_read(void **state) {
+  (void)state;
+  struct cb_scene s;
+  assert_int_equal(cb_scene_read(scene_file("{", "{"), &s), CB_OK);
+  assert_string_equal(s.name, "scene");
+  assert_string_equal(s.about, "a block");
+  assert_true(s.cells[2] == 3 && s.cell == 0.1 && s.step == 0.001);
+  assert_true(s.fixed[0].low[2] == 0 && s.fixed[0].high[2] == 0 && s.fixed[0].high[0] == 1);
+  assert_true(s.load[0].force[0] == 1 && s.load_count == 1 && s.handle_count == 0);
+  assert_int_equal(s.needs.laws, CB_KEEPS(CB_LAW_NEWTON));
+  assert_true(s.needs.torque == 1e-3 && isinf(s.needs.displacement) && !s.needs.inversion);
+}
+
+static void a_bad_scene_is_refused_in_one_sentence(void **state) {
+  (void)state;
+  static const struct {
+    const char *from, *to;
+    int line;
+    const char *said;
+  } bad[] = {
+      {"young_pa", "young", 4, "'young' has no unit; write 'young_pa'"},
+      {"\"poisson\": 0.3", "\"poison\": 0.3", 4, "unknown key 'poison' (nearest: 'poisson')"},
+      {"\"poisson\": 0.3", "\"poisson\": 0.5", 4, "'poisson' is 0.5; it must be from -1 to 0.5"},
+      {"\"poisson\": 0.3", "\"poisson\": NaN", 4, "invalid token near 'NaN'"},
+      {"1e5", "1e999", 4, "real number overflow"},
+      {"1e5", "\"soft\"", 4, "'young_pa' must be a number"},
+      {"\"step_s\": 0.001,", "", 1, "'step_s' is missing"},
+      {"0.001", "0", 8, "'step_s' is 0; it must be from"},
+      {"\"step_s\": 0.001,", "\"step_s\": 0.001, \"step_s\": 1,", 8, "duplicate object key"},
+      {"[2, 2, 3]", "[2, 2.5, 3]", 3, "'cells' must be a whole number"},
+      {"[2, 2, 3]", "[2, 3]", 3, "'cells' must be three numbers in brackets"},
+      {"[2, 2, 3]", "[2, 0, 3]", 3, "'cells' is 0; it must be from 1 to 200"},
+      {"\"z-\"", "\"down\"", 5, "'face' is 'down'; it must be x-, x+, y-, y+, z- or z+"},
+      {"\"face\": \"z-\"", "", 5, "nodes are chosen by 'face', or by 'low' and 'high'"},
+      {"[1, 0, 0]", "[1, 0]", 7, "'force_n' must be three numbers in brackets"},
+      {"\"newton\": true", "\"newton\": 1", 10, "'newton' must be true or false"},
+      {"\"newton\"", "\"neuton\"", 10, "unknown key 'neuton' (nearest: 'newton')"},
+      {"0.1,\n \"needs\"", "1e-6,\n \"needs\"", 9, "'duration_s' is 0.001 steps of 'step_s'"},
+      {"[{\"face\": \"z-\"}]", "{}", 5, "'fixed' must be a list of objects in brackets"},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    struct cb_scene s = {.step = 77};
+    char place[32];
+    const char *path = scene_file(bad[i].from, bad[i].to);
+    assert_int_equal(cb_scene_read(path, &s), CB_INPUT);
+    assert_true(s.step == 77); /* untouched */
+    snprintf(place, sizeof place, "scene.json:%d: ", bad[i].line);
+    if (!strstr(cb_error_message(), place) || !strstr(cb_error_message(), bad[i].said))
+      fail_msg("'%s' and '%s' are not both in: %s", place, bad[i].said, cb_error_message());
+  }
+  struct cb_scene s;
+  assert_int_equal(cb_scene_read(temporary_path("none.json"), &s), CB_IO);
+}
+
+static void a_selection_needs_nodes(void **state) {
+  (void)state;
+  struct cb_scene s;
+  struct cb_body b;
+  assert_int_equal(cb_scene_read(scene_file("\"low\": [0, 0, 1]", "\"low\": [0.1, 0, 1]"), &s),
+                   CB_OK);
+  s.load[0].where.high[0] = 0.2;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_INPUT);
+  assert_non_null(strstr(cb_error_message(), "no node lies in entry 1 of 'loads'"));
+}
+
+/* ---- bodies ------------------------------------------------------------------------- */
+
+static struct cb_scene plain(void) {
+  struct cb_scene s = {.cells = {2, 2, 3},
+                       .cell = 0.05,
+                       .stretch = {1, 1, 1},
+                       .step = 1e-3,
+                       .duration = 0.1,
+                       .needs = {.displacement = INFINITY, .torque = INFINITY, .energy = INFINITY}};
+  snprintf(s.name, sizeof s.name, "plain");
+  assert_int_equal(cb_material_isotropic(1e5, 0.3, 1000, &s.material), CB_OK);
+  return s;
+}
+
+static struct cb_trial trial(const char *variant, size_t iterations) {
+  return (struct cb_trial){
+      .variant = cb_variant_find(variant), .threads = 1, .iterations = iterations, .step = 1e-3};
+}
+
+static void points_follow_an_affine_motion(void **state) {
+  (void)state;
+  static const double resolutions[] = {0.5, 1, 2};
+  static const double A[9] = {1.2, 0.3, 0, -0.1, 0.9, 0.2, 0.4, 0, 1.1};
+  struct cb_scene s = plain();
+  for (size_t r = 0; r < 3; r++) {
+    struct cb_body b;
+    double p[3 * CB_POINTS], q[3 * CB_POINTS];
+    assert_int_equal(cb_body_create(&s, resolutions[r], &b), CB_OK);
+    cb_body_points(&b, b.at.mesh.X, p);
+    for (size_t i = 0; i < 3 * b.at.mesh.nodes; i++) {
+      const double *X = b.at.mesh.X + i / 3 * 3, *row = A + 3 * (i % 3);
+      b.at.x[i] = row[0] * X[0] + row[1] * X[1] + row[2] * X[2];
+    }
+    cb_body_points(&b, b.at.x, q);
+    for (size_t i = 0; i < 3 * CB_POINTS; i++) {
+      const double *P = p + i / 3 * 3, *row = A + 3 * (i % 3);
+      assert_true(fabs(q[i] - (row[0] * P[0] + row[1] * P[1] + row[2] * P[2])) < 1e-14);
+    }
+    /* the same places at every resolution: the corners of a grid of 4 x 4 x 4 */
+    assert_true(fabs(p[3 * 63 + 2] - 0.15) < 1e-14 && fabs(p[3 * 1] - 0.1 / 3) < 1e-14);
+    cb_body_free(&b);
+  }
+}
+
+/* Backward Euler: v = g n h, x = g h^2 n (n + 1) / 2. */
+static void what_nothing_holds_falls(void **state) {
+  (void)state;
+  struct cb_scene s = plain();
+  struct cb_body b;
+  static struct cb_outcome o;
+  s.gravity[2] = -10;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+  const struct cb_trial t = trial("polar-exact/bcsr/f64", 0);
+  assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
+  assert_true(o.finite && o.steps == 100 && o.inverted == 0);
+  const double fallen = -10 * 1e-6 * 100 * 101 / 2;
+  assert_true(fabs(o.point[CB_SAMPLES - 1][3 * 5 + 2] - fallen) < 1e-12);
+  assert_true(o.step_s > 0 && fabs(o.seconds - o.step_s / 1e-3) < 1e-9 * o.seconds);
+  cb_body_free(&b);
+}
+
+static void handles_end_where_they_should(void **state) {
+  (void)state;
+  struct cb_scene s = plain();
+  struct cb_body b;
+  static struct cb_outcome cg, direct, again;
+  s.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}}, s.fixed_count = 1;
+  s.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0, 0, 0.02}, 0.05};
+  s.handle_count = 1;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+  const struct cb_trial t = trial("polar-exact/ebe/f64", 60), d = trial("polar-exact/bcsr/f64", 0);
+  assert_int_equal(cb_body_run(&b, &t, &cg), CB_OK);
+  assert_int_equal(cb_body_run(&b, &d, &direct), CB_OK);
+  assert_int_equal(cb_body_run(&b, &t, &again), CB_OK);
+  /* the far corner, turned by 1 rad about (0.05, 0.05) and lifted */
+  const double *p = cg.point[CB_SAMPLES - 1] + 3 * 63;
+  assert_true(fabs(p[0] - (0.05 + 0.05 * (cos(1) - sin(1)))) < 1e-12);
+  assert_true(fabs(p[1] - (0.05 + 0.05 * (sin(1) + cos(1)))) < 1e-12);
+  assert_true(fabs(p[2] - 0.17) < 1e-12);
+  /* iterated to the end is solved directly; and the same again */
+  assert_true(cb_outcome_error(&cg, &direct, b.size) < 1e-9);
+  assert_memory_equal(cg.point, again.point, sizeof cg.point);
+  cb_body_free(&b);
+}
+
+/* Halving the step halves the distance to the truth; the truth's own is a tenth. */
+static void the_truth_is_the_limit(void **state) {
+  (void)state;
+  struct cb_scene s = plain();
+  struct cb_body b;
+  static struct cb_outcome truth, iterated, o;
+  double error[2];
+  s.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}}, s.fixed_count = 1;
+  s.twist = 0.5, s.duration = 0.05;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+  assert_int_equal(cb_body_truth(&b, &truth), CB_OK);
+  assert_int_equal(cb_body_truth_iterated(&b, 1, &iterated), CB_OK);
+  assert_true(cb_outcome_error(&iterated, &truth, b.size) < 1e-9);
+  assert_true(cb_outcome_error(&truth, &truth, b.size) == 0);
+  for (int n = 0; n < 2; n++) {
+    struct cb_trial t = trial("polar-exact/bcsr/f64", 0);
+    t.step /= 1 << n;
+    assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
+    error[n] = cb_outcome_error(&o, &truth, b.size);
+  }
+  assert_true(error[0] > 1e-4 && error[0] > 1.5 * error[1] && error[0] < 3 * error[1]);
+  cb_body_free(&b);
+}
+
+static void a_broken_run_is_an_outcome(void **state) {
+  (void)state;
+  struct cb_scene s = plain();
+  struct cb_body b;
+  static struct cb_outcome o, truth;
+  s.velocity[0] = INFINITY;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+  const struct cb_trial t = trial("qr-updated/ebe/f64", 5);
+  assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
+  assert_false(o.finite);
+  assert_true(isnan(cb_outcome_error(&o, &truth, b.size)) && isnan(o.torque));
+  cb_body_free(&b);
+}
+
+/* ---- what is not asked for costs nothing ------------------------------------------------ */
+
+static unsigned long all_operations(void) {
+  struct cb_counts c[STAGES];
+  unsigned long sum = 0;
+  cb_counter_read(c);
+  for (int i = 0; i < STAGES; i++) sum += c[i].mul + c[i].add + c[i].div + c[i].sqrt;
+  return sum;
+}
+
+/* Operations of one step of the bare kernel, on the body's own start. */
+static unsigned long bare(const struct cb_body *b, const void *external, double alpha,
+                          double beta) {
+  const struct cb_variant *v = cb_variant_find("qr-updated/ebe/counted");
+  const struct cb_step_parameters step = {1e-3, alpha, beta, 3};
+  struct cb_job job;
+  assert_int_equal(cb_job_create(v, 1, &b->at, &step, &job), CB_OK);
+  cb_counter_reset();
+  cb_stepper_step(job.stepper, job.x, job.v, external);
+  const unsigned long sum = all_operations();
+  cb_job_free(&job);
+  return sum;
+}
+
+/* The same within a run of the scene: what two runs of ten and of twenty steps differ by. */
+static unsigned long in_scene(struct cb_scene s) {
+  unsigned long sum[2];
+  for (int n = 0; n < 2; n++) {
+    struct cb_body b;
+    static struct cb_outcome o;
+    s.duration = 10 * (n + 1) * 1e-3;
+    assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+    const struct cb_trial t = trial("qr-updated/ebe/counted", 3);
+    cb_counter_reset();
+    assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
+    sum[n] = all_operations();
+    cb_body_free(&b);
+  }
+  return (sum[1] - sum[0]) / 10;
+}
+
+static void what_is_absent_costs_nothing(void **state) {
+  (void)state;
+  struct cb_scene s = plain();
+  struct cb_body b;
+  s.cells[2] = 2;
+  s.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}}, s.fixed_count = 1;
+  s.twist = 0.2;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+  assert_null(b.external);
+  const unsigned long least = bare(&b, NULL, 0, 0);
+  assert_int_equal(in_scene(s), least);
+  struct cb_scene with = s; /* gravity: h f is added to each number of the right-hand side */
+  with.gravity[2] = -10;
+  assert_int_equal(in_scene(with), least + 3 * b.at.mesh.nodes);
+  with = s; /* damping by mass takes work, by stiffness none: it is in c */
+  with.beta = 1;
+  assert_true(in_scene(with) > least);
+  with = s;
+  with.alpha = 1e-3;
+  assert_int_equal(in_scene(with), least);
+  with = s; /* handles are moved, not computed */
+  with.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0}, 0.01};
+  with.handle_count = 1;
+  assert_int_equal(in_scene(with), least);
+  cb_body_free(&b);
+}
+
+/* ---- the ones that are shipped ------------------------------------------------------------- */
+
+static void shipped_scenes_run(void **state) {
+  (void)state;
+  static const char *const names[] = {"block",         "cantilever",         "twisted-bar",
+                                      "spinning-body", "small-displacement", "stiff"};
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+    char path[64];
+    struct cb_scene s;
+    struct cb_body b;
+    static struct cb_outcome o;
+    snprintf(path, sizeof path, "scenes/%s.json", names[n]);
+    assert_int_equal(cb_scene_read(path, &s), CB_OK);
+    assert_string_equal(s.name, names[n]);
+    s.duration = 10 * s.step;
+    assert_int_equal(cb_body_create(&s, 0.6, &b), CB_OK);
+    struct cb_trial t = trial("polar-exact/ebe/f64", 20);
+    t.step = s.step;
+    assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
+    assert_true(o.finite && o.steps == 10 && o.torque < 1e-12);
+    cb_body_free(&b);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_good_scene_is_read),
+      cmocka_unit_test(a_bad_scene_is_refused_in_one_sentence),
+      cmocka_unit_test(a_selection_needs_nodes),
+      cmocka_unit_test(points_follow_an_affine_motion),
+      cmocka_unit_test(what_nothing_holds_falls),
+      cmocka_unit_test(handles_end_where_they_should),
+      cmocka_unit_test(the_truth_is_the_limit),
+      cmocka_unit_test(a_broken_run_is_an_outcome),
+      cmocka_unit_test(what_is_absent_costs_nothing),
+      cmocka_unit_test(shipped_scenes_run),
+  };
+  return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
+}
