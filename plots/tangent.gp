@@ -1,6 +1,7 @@
 # How far the operator of each model is from the derivative of its force, against strain.
-# Reads tangent.csv, footer.txt.
+# Reads tangent.csv, truth-footer.txt.
 # SPDX-License-Identifier: BSD-3-Clause
+footer_file = "truth-footer.txt"
 load "plots/style.gp"
 width = 900
 height = 600

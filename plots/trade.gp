@@ -1,7 +1,8 @@
 # Error against time on a scene; refinement at equal time; ghost torque against the
 # iterations of the frame and against lazy updates.
-# Reads trade.csv, footer.txt.
+# Reads trade.csv, trade-footer.txt.
 # SPDX-License-Identifier: BSD-3-Clause
+footer_file = "trade-footer.txt"
 load "plots/style.gp"
 width = 1300
 height = 1000

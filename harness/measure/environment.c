@@ -11,6 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "harness/files/output.h"
+
 #define CPU0 "/sys/devices/system/cpu/cpu0/"
 
 /* First line of the file without its newline, or the fallback. */
@@ -145,4 +147,16 @@ json_t *cb_environment_json(const struct cb_environment *e) {
 void cb_environment_line(const struct cb_environment *e, size_t size, char *line) {
   snprintf(line, size, "%s, %zu core%s | %s %s | commit %s | %.10s", e->cpu, e->cores,
            e->cores == 1 ? "" : "s", e->compiler, e->flags, e->commit, e->date);
+}
+
+enum cb_status cb_environment_footer(const char *directory, const char *name) {
+  struct cb_environment e;
+  struct cb_output o;
+  char line[1024];
+  cb_environment_read(&e);
+  cb_environment_line(&e, sizeof line, line);
+  enum cb_status status = cb_output_open(&o, directory, name);
+  if (status) return status;
+  fprintf(o.stream, "%s\n", line);
+  return cb_output_commit(&o);
 }

@@ -39,5 +39,7 @@ json_t *cb_environment_json(const struct cb_environment *e);
 /* "CPU, n cores | compiler flags | commit | date", for the foot of plots and
  * tables, cut to line[size]. */
 void cb_environment_line(const struct cb_environment *e, size_t size, char *line);
+/* directory/name := that line, of now. CB_IO, recorded. */
+enum cb_status cb_environment_footer(const char *directory, const char *name);
 
 #endif

@@ -27,6 +27,7 @@ static enum cb_status write_files(const struct cb_trade *trade, const char *dire
   enum cb_status status = t ? CB_OK : cb_fail_memory("the table of the trade");
   if (!status) status = cb_output_table(directory, "trade.csv", t, CB_CSV);
   if (!status) status = cb_output_table(directory, "trade.json", t, CB_JSON);
+  if (!status) status = cb_environment_footer(directory, "trade-footer.txt");
   cb_table_free(t);
   return status;
 }

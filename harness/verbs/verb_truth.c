@@ -5,6 +5,7 @@
 
 #include "harness/error.h"
 #include "harness/files/output.h"
+#include "harness/measure/environment.h"
 #include "harness/truth/truth.h"
 
 static const char doc[] =
@@ -21,6 +22,7 @@ static enum cb_status write_files(const struct cb_options *o, const struct cb_ta
   if (!status) status = cb_output_table(o->output, "truth.csv", truth, CB_CSV);
   if (!status) status = cb_tangent_sweep(o, &tangent);
   if (!status) status = cb_output_table(o->output, "tangent.csv", tangent, CB_CSV);
+  if (!status) status = cb_environment_footer(o->output, "truth-footer.txt");
   cb_table_free(tangent);
   return status;
 }

@@ -245,24 +245,12 @@ static enum cb_status run_claims(struct request *r, const struct cb_verification
 }
 
 /* One line for the foot of figure 3: which machine and program. */
-static enum cb_status write_footer(const char *directory) {
-  struct cb_environment e;
-  struct cb_output o;
-  char line[512];
-  cb_environment_read(&e);
-  cb_environment_line(&e, sizeof line, line);
-  enum cb_status status = cb_output_open(&o, directory, "verify-footer.txt");
-  if (status) return status;
-  fprintf(o.stream, "%s\n", line);
-  return cb_output_commit(&o);
-}
-
 /* Figure 3 is drawn from files; without --output there is nobody to draw it. */
 static enum cb_status write_figure3(const struct request *r) {
   struct cb_table *t = NULL;
   enum cb_status status = cb_figure3_run(&t);
   if (!status) status = cb_output_table(r->options.output, "figure3.csv", t, CB_CSV);
-  if (!status) status = write_footer(r->options.output);
+  if (!status) status = cb_environment_footer(r->options.output, "verify-footer.txt");
   cb_table_free(t);
   return status;
 }
