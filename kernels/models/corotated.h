@@ -374,10 +374,10 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 #define COROTATED_PRODUCT(ID, POLICY, TAG)                                                         \
   INLINE void ID##_ebe_product_##TAG(const struct cb_elements *E, const T *r, const T *s,          \
                                      const T *u, T *f) {                                           \
-    corotated_ebe_product(E, POLICY, r, s, u, f);                                           \
+    corotated_ebe_product(E, POLICY, r, s, u, f);                                                  \
   }                                                                                                \
   STORAGE_EBE_PRODUCT(ID, TAG)                                                                     \
-  STORAGE_CLUSTER_PRODUCT(ID, TAG)
+  STORAGE_CLUSTER_PRODUCT(ID, TAG, drive_product_clusters)
 
 #define COROTATED_PAPER(ID, POLICY, EXACT, ORTHO, TAG)                                             \
   INLINE void ID##_paper_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
@@ -471,7 +471,9 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 #if CB_LANES == 1
 #define COROTATED_TUNED_PAPER(ID, POLICY) COROTATED_PAPER(ID, POLICY, 0, 0, iso)
 #define COROTATED_TUNED_FORM(ID, POLICY)                                                           \
-  { FORM_PAPER(ID, iso, COROTATED_STATE_PAPER(POLICY)), { NULL, NULL, 0 } }
+  {                                                                                                \
+    FORM_PAPER(ID, iso, COROTATED_STATE_PAPER(POLICY)), { NULL, NULL, 0 }                          \
+  }
 #else
 #define COROTATED_TUNED_PAPER(ID, POLICY)
 #define COROTATED_TUNED_FORM(ID, POLICY)                                                           \

@@ -23,12 +23,12 @@
 #define STORAGE_EBE(ID, TAG)                                                                       \
   UPDATE_FUNCTION(ID##_ebe_update_##TAG, drive_update(E, thread, x, v, h, out, ID##_ebe_##TAG))
 /* ... in clusters, whether the state or the positions are kept; DRIVE:
- * update_clusters, FN inlined, or drive_update_clusters, FN called. */
+ * update_clusters, FN inlined, or drive_update_clusters, FN called; of the product:
+ * product_clusters_of_model or drive_product_clusters. */
 #define STORAGE_CLUSTER(ID, TAG, DRIVE, FN)                                                        \
   UPDATE_FUNCTION(ID##_cluster_update_##TAG, DRIVE(E, thread, x, v, h, out, FN))
-#define STORAGE_CLUSTER_PRODUCT(ID, TAG)                                                           \
-  PRODUCT_FUNCTION(ID##_cluster_run_##TAG,                                                         \
-                   drive_product_clusters(E, thread, u, y, ID##_ebe_product_##TAG))
+#define STORAGE_CLUSTER_PRODUCT(ID, TAG, DRIVE)                                                    \
+  PRODUCT_FUNCTION(ID##_cluster_run_##TAG, DRIVE(E, thread, u, y, ID##_ebe_product_##TAG))
 /* ... and its product, unless it is cb_product_gradients. */
 #define STORAGE_EBE_PRODUCT(ID, TAG)                                                               \
   PRODUCT_FUNCTION(ID##_ebe_run_##TAG, drive_product(E, thread, u, y, ID##_ebe_product_##TAG))

@@ -107,7 +107,7 @@ INLINE void green_blocks(const struct cb_elements *E, int ortho, const T *rest, 
   STORAGE_EBE(green, TAG)                                                                          \
   STORAGE_EBE_PRODUCT(green, TAG)                                                                  \
   STORAGE_CLUSTER(green, TAG, update_clusters, green_ebe_##TAG)                                    \
-  STORAGE_CLUSTER_PRODUCT(green, TAG)                                                              \
+  STORAGE_CLUSTER_PRODUCT(green, TAG, product_clusters_of_model)                                   \
   STORAGE_BLOCKS(green, TAG, 0)                                                                    \
   STORAGE_ASSEMBLED(green, TAG, green_blocks_##TAG, TERMS_BLOCKS)
 GREEN(0, iso)

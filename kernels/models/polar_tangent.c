@@ -127,7 +127,7 @@ INLINE void tangent_blocks(const struct cb_elements *E, bool clamped, const T *r
   STORAGE_EBE(ID, iso)                                                                             \
   STORAGE_EBE_PRODUCT(ID, iso)                                                                     \
   STORAGE_CLUSTER(ID, iso, update_clusters, ID##_ebe_iso)                                          \
-  STORAGE_CLUSTER_PRODUCT(ID, iso)                                                                 \
+  STORAGE_CLUSTER_PRODUCT(ID, iso, product_clusters_of_model)                                      \
   STORAGE_ASSEMBLED(ID, iso, ID##_blocks_iso, TERMS_BLOCKS)                                        \
   const struct cb_model CB_NAME(cb_model_##ID) = {                                                 \
       .name = NAME,                                                                                \
