@@ -73,6 +73,14 @@ static void the_cheapest_that_does_is_recommended(void **state) {
     assert_false(number(one, "value") <= number(one, "limit"));
   }
   assert_true(linear && stale);
+  /* the scene's own step and mesh meet the needs; so many of the others are tried */
+  const json_t *settings = json_object_get(json, "settings");
+  assert_int_equal(json_array_size(settings), CB_SETTINGS);
+  json_array_foreach(settings, i, one) {
+    if (i == 0) assert_true(number(one, "step_s") == 0.001 && number(one, "tetrahedra") == 80);
+    if (i == 0) assert_true(json_is_true(json_object_get(one, "meets")));
+    if (json_is_true(json_object_get(one, "meets"))) assert_true(number(one, "error") <= 0.1);
+  }
   json_decref(json);
 }
 

@@ -1,7 +1,7 @@
 /* advise.c - see advise.h.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "harness/advise/advise.h"
+#include "harness/advise/explorer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,25 +26,17 @@ static const char *const MODELS[] = {"linear",
                                      "polar-exact",
                                      "polar-quaternion-precomputed",
                                      "svd-updated"};
-static const size_t ITERATIONS[] = {1, 2, 3, 4, 5, 7, 10, 14, 20, 30, 45, 70, 100};
+const size_t cb_advise_iterations[CB_ADVISE_ITERATIONS] = {1,  2,  3,  4,  5,  7,  10,
+                                                           14, 20, 30, 45, 70, 100};
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-enum { WIDENED = 6, WIDENED_QUICK = 3, TIMED = 10 }; /* model and precision pairs; variants */
-enum { ROUNDS = 21 };
-static const double TIMING = 12, TIMING_QUICK = 2; /* s */
-
-struct explorer {
-  const struct cb_body *body;
-  const struct cb_advise_request *request;
-  struct cb_outcome truth, outcome;
-  struct cb_patches patches;
-  double done, planned; /* of the progress */
-};
-
-static void say(struct explorer *e, const char *what) { cb_progress(e->done, what); }
+enum { WIDENED = 6, WIDENED_QUICK = 3 }; /* model and precision pairs */
 
 /* ---- one candidate ------------------------------------------------------------------ */
 
-static enum cb_status try(struct explorer *e, const struct cb_advice *a, struct cb_candidate *c) {
+void cb_explorer_say(struct explorer *e, const char *what) { cb_progress(e->done, what); }
+
+enum cb_status cb_explorer_try(struct explorer *e, const struct cb_advice *a,
+                               struct cb_candidate *c) {
   enum cb_status status = cb_body_run(e->body, &c->trial, &e->outcome);
   if (status) return status;
   c->finite = e->outcome.finite;
@@ -85,8 +77,6 @@ static enum cb_status measure_laws(struct explorer *e, const struct cb_advice *a
 
 /* ---- models: the fewest iterations that do -------------------------------------------- */
 
-enum { ERRORS = 1u << CB_NEED_DISPLACEMENT | 1u << CB_NEED_ENERGY };
-
 /* More iterations make nothing better but errors, and a step dearer. Shown is the first
  * that does, or the one with the smallest error. */
 static enum cb_status try_model(struct explorer *e, struct cb_advice *a, const char *model,
@@ -96,16 +86,16 @@ static enum cb_status try_model(struct explorer *e, struct cb_advice *a, const c
   struct cb_candidate c = {.trial = {.variant = v, .threads = 1, .step = e->body->scene->step}};
   size_t best = a->tried_count;
   cb_variant_name(v, c.name);
-  say(e, c.name);
+  cb_explorer_say(e, c.name);
   enum cb_status status = measure_laws(e, a, model, &c);
-  for (size_t i = 0; !status && i < COUNT(ITERATIONS); i++) {
-    c.trial.iterations = ITERATIONS[i];
-    status = try(e, a, &c);
+  for (size_t i = 0; !status && i < CB_ADVISE_ITERATIONS; i++) {
+    c.trial.iterations = cb_advise_iterations[i];
+    status = cb_explorer_try(e, a, &c);
     if (status) break;
     a->tried[a->tried_count] = c;
     if (!i || !(c.error >= 0.98 * a->tried[best].error) || !c.unmet) best = a->tried_count;
     a->tried_count++;
-    if (!(c.unmet & ERRORS) || !c.finite) break; /* the rest is no matter of iterations */
+    if (!(c.unmet & CB_NEED_ERRORS) || !c.finite) break; /* the rest is no matter of iterations */
   }
   if (!status) a->tried[best].last = true;
   return status;
@@ -127,7 +117,7 @@ static enum cb_status try_models(struct explorer *e, struct cb_advice *a) {
   const struct cb_model *const *models = cb_arithmetics[0]->models;
   size_t count = 0;
   for (size_t m = 0; models[m]; m++) count += asked(e->request->options, models[m]->name);
-  a->tried = calloc(2 * COUNT(ITERATIONS) * count + 1, sizeof *a->tried);
+  a->tried = calloc(2 * CB_ADVISE_ITERATIONS * count + 1, sizeof *a->tried);
   if (!a->tried) return cb_fail_memory("the list of models");
   enum cb_status status = CB_OK;
   for (size_t m = 0; !status && models[m]; m++) {
@@ -170,85 +160,18 @@ static enum cb_status widen(struct explorer *e, struct cb_advice *a) {
         struct cb_candidate c = a->tried[i];
         c.trial.variant = v, c.trial.threads = threads->of[t];
         cb_variant_name(v, c.name);
-        say(e, c.name);
-        status = try(e, a, &c);
+        cb_explorer_say(e, c.name);
+        status = cb_explorer_try(e, a, &c);
         if (!status && !c.unmet) a->ranked[a->ranked_count++] = c;
       }
     e->done += 15.0 / (double)most;
   }
   qsort(a->ranked, a->ranked_count, sizeof *a->ranked, by_step);
-  if (a->ranked_count > TIMED) a->ranked_count = TIMED;
+  if (a->ranked_count > CB_ADVISE_TIMED) a->ranked_count = CB_ADVISE_TIMED;
   return status;
 }
 
-/* ---- timing against each other -------------------------------------------------------------- */
-
-static void restore(void *context) {
-  struct cb_job *job = context;
-  memcpy(job->x, job->start_x, job->vector_bytes);
-  memcpy(job->v, job->start_v, job->vector_bytes);
-}
-
-static void run_steps(void *context, size_t repeats) {
-  struct cb_job *job = context;
-  for (size_t i = 0; i < repeats; i++) cb_stepper_step(job->stepper, job->x, job->v, NULL);
-}
-
-static void show(void *context, double share, const char *subject) {
-  struct explorer *e = context;
-  cb_progress(e->done + share * (e->request->quick ? TIMING_QUICK : TIMING), subject);
-}
-
-/* Median, interval and ties, the cheapest first. */
-static enum cb_status rank(struct cb_advice *a, const struct cb_samples *samples) {
-  for (size_t i = 0; i < a->ranked_count; i++) {
-    struct cb_candidate *c = &a->ranked[i];
-    enum cb_status status =
-        cb_median_interval(samples->rounds, samples->step_s + i * samples->stride, &c->step, NULL);
-    if (status) return status;
-    c->step_s = c->step.value;
-    c->unmet = cb_needs_unmet(a, c);
-  }
-  qsort(a->ranked, a->ranked_count, sizeof *a->ranked, by_step);
-  size_t kept = 0; /* the interleaved time decides about frames */
-  for (size_t i = 0; i < a->ranked_count; i++)
-    if (!a->ranked[i].unmet) a->ranked[kept++] = a->ranked[i];
-  a->ranked_count = kept;
-  for (size_t i = 0; i < kept; i++)
-    a->ranked[i].tie = a->ranked[i].step.low <= a->ranked[0].step.high;
-  return CB_OK;
-}
-
-static enum cb_status time_ranked(struct explorer *e, struct cb_advice *a) {
-  struct cb_job jobs[TIMED] = {0};
-  struct cb_subject subjects[TIMED];
-  struct cb_samples samples = {0};
-  const double budget_s = e->request->quick ? TIMING_QUICK : TIMING;
-  const size_t count = a->ranked_count;
-  enum cb_status status = CB_OK;
-  for (size_t i = 0; !status && i < count; i++) {
-    const struct cb_scene *s = e->body->scene;
-    const struct cb_candidate *c = &a->ranked[i];
-    const struct cb_step_parameters step = {c->trial.step, s->alpha, s->beta, c->trial.iterations};
-    status = cb_job_create(c->trial.variant, c->trial.threads, &e->body->at, &step, &jobs[i]);
-    subjects[i] = (struct cb_subject){c->name, restore, run_steps, &jobs[i]};
-  }
-  const struct cb_timing timing = {.epoch_s = fmax(2e-3, 0.8 * budget_s / (double)(count * ROUNDS)),
-                                   .budget_s = budget_s,
-                                   .min_rounds = 6,
-                                   .max_rounds = ROUNDS,
-                                   .seed = e->request->options->seed,
-                                   .progress = show,
-                                   .progress_context = e};
-  if (!status) status = cb_timer_run(count, subjects, &timing, &samples);
-  if (!status) status = rank(a, &samples);
-  cb_samples_free(&samples);
-  for (size_t i = 0; i < count; i++) cb_job_free(&jobs[i]);
-  return status;
-}
-
-/* ---- without a need ---------------------------------------------------------------------------
- */
+/* ---- without a need --------------------------------------------------------- */
 
 /* The cheapest of those tried that meet the needs of a; SIZE_MAX: none. */
 static size_t cheapest(const struct cb_advice *a) {
@@ -286,8 +209,7 @@ static void relax(struct cb_advice *a) {
   }
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------
- */
+/* ---- the whole -------------------------------------------------------------- */
 
 static void set_needs(const struct cb_body *body, const struct cb_advise_request *r,
                       struct cb_advice *a) {
@@ -305,17 +227,18 @@ enum cb_status cb_advise(const struct cb_body *body, const struct cb_advise_requ
   struct explorer *e = calloc(1, sizeof *e);
   struct cb_advice a = {0};
   if (!e) return cb_fail_memory("the trials");
-  *e = (struct explorer){.body = body, .request = request};
+  *e = (struct explorer){.body = body, .request = request, .timing_s = request->quick ? 2 : 12};
   set_needs(body, request, &a);
-  cb_progress_begin("advise", 50 + (request->quick ? TIMING_QUICK : TIMING));
-  say(e, "the scene's truth");
+  cb_progress_begin("advise", 50 + e->timing_s);
+  cb_explorer_say(e, "the scene's truth");
   enum cb_status status = cb_body_truth(body, &e->truth);
   e->done += 15;
   if (!status) status = cb_patches_random(50, 2, 0.3, request->options->seed, &e->patches);
   if (!status) status = try_models(e, &a);
   qsort(a.tried, a.tried_count, sizeof *a.tried, by_step);
   if (!status) status = widen(e, &a);
-  if (!status && a.ranked_count) status = time_ranked(e, &a);
+  if (!status && a.ranked_count) status = cb_explorer_rank(e, &a);
+  if (!status && a.ranked_count) status = cb_explorer_settings(e, &a);
   if (!status) relax(&a);
   cb_progress_end();
   cb_patches_free(&e->patches);

@@ -45,6 +45,16 @@ struct cb_relaxation {
                        none does */
 };
 
+/* The recommended variant with another step or on a coarser mesh, at the fewest
+ * iterations that do. */
+struct cb_setting {
+  double step, resolution;
+  size_t tetrahedra;
+  struct cb_candidate candidate; /* unmet: nothing up to 100 iterations did */
+  double seconds;                /* of computing for a simulated second, as tried */
+};
+enum { CB_SETTINGS = 6 };
+
 struct cb_advice {
   struct cb_needs needs; /* of the scene, or as asked */
   double frame_s;        /* that a frame may take; infinity: no need */
@@ -54,6 +64,8 @@ struct cb_advice {
                                   they do; the cheapest first */
   struct cb_candidate *ranked; /* the cheapest first */
   struct cb_relaxation relaxed[CB_NEEDS];
+  size_t setting_count;
+  struct cb_setting setting[CB_SETTINGS]; /* the scene's own first */
   enum cb_need binding; /* nothing ranked: the need whose relaxation alone would do; CB_NEEDS:
                            no single one */
 };

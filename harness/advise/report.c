@@ -80,6 +80,23 @@ static struct cb_table *relaxed(const struct cb_advice *a) {
   return t;
 }
 
+static struct cb_table *settings(const struct cb_advice *a) {
+  struct cb_table *t = cb_table_create("step_ms,tetrahedra,iterations,ms_per_second,"
+                                       "displacement_error,torque,energy_error,meets_the_needs");
+  for (size_t i = 0; t && i < a->setting_count; i++) {
+    const struct cb_setting *s = &a->setting[i];
+    cb_table_number(t, 1e3 * s->step);
+    cb_table_integer(t, (long long)s->tetrahedra);
+    cb_table_integer(t, (long long)s->candidate.trial.iterations);
+    cb_table_number(t, 1e3 * s->seconds);
+    cb_table_number(t, s->candidate.error);
+    cb_table_number(t, s->candidate.torque);
+    cb_table_number(t, s->candidate.energy);
+    cb_table_text(t, s->candidate.unmet ? "no" : "yes");
+  }
+  return t;
+}
+
 static enum cb_status print_table(const char *title, struct cb_table *t) {
   enum cb_status status = t ? CB_OK : cb_fail_memory("a table");
   if (!status && cb_table_rows(t)) {
@@ -143,6 +160,10 @@ static enum cb_status print_text(const struct cb_body *body, const struct cb_adv
                          ranking(a));
   if (!status) status = print_table("Tried and dropped, with the first need unmet:", rejected(a));
   if (!status)
+    status = print_table("The recommended variant with other steps and meshes (the scene's own "
+                         "first), at the fewest iterations that do:",
+                         settings(a));
+  if (!status)
     status = print_table("What relaxing a need would gain (time of a step by that of the cheapest "
                          "that does):",
                          relaxed(a));
@@ -193,17 +214,31 @@ static json_t *relaxed_json(const struct cb_advice *a) {
   return list;
 }
 
+static json_t *settings_json(const struct cb_advice *a) {
+  json_t *list = json_array();
+  for (size_t i = 0; i < a->setting_count; i++) {
+    const struct cb_setting *s = &a->setting[i];
+    json_array_append_new(
+        list, json_pack("{s:o, s:f, s:I, s:I, s:o, s:o, s:b}", "step_s", number(s->step),
+                        "resolution", s->resolution, "tetrahedra", (json_int_t)s->tetrahedra,
+                        "iterations", (json_int_t)s->candidate.trial.iterations,
+                        "seconds_per_second", number(s->seconds), "error",
+                        number(s->candidate.error), "meets", !s->candidate.unmet));
+  }
+  return list;
+}
+
 static enum cb_status print_json(const struct cb_body *body, const struct cb_advice *a) {
   json_t *list = json_array();
   for (size_t i = 0; i < a->ranked_count; i++)
     json_array_append_new(list, candidate_json(a, &a->ranked[i]));
-  json_t *all =
-      json_pack("{s:s, s:I, s:o, s:o, s:o, s:o, s:o}", "scene", body->scene->name, "tetrahedra",
-                (json_int_t)body->at.mesh.tets, "recommended",
-                a->ranked_count ? candidate_json(a, &a->ranked[0]) : json_null(), "ranking", list,
-                "rejected", rejected_json(a), "relaxed", relaxed_json(a), "binding",
-                a->ranked_count || a->binding == CB_NEEDS ? json_null()
-                                                          : json_string(cb_need_name[a->binding]));
+  json_t *all = json_pack(
+      "{s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene", body->scene->name, "tetrahedra",
+      (json_int_t)body->at.mesh.tets, "recommended",
+      a->ranked_count ? candidate_json(a, &a->ranked[0]) : json_null(), "ranking", list, "rejected",
+      rejected_json(a), "settings", settings_json(a), "relaxed", relaxed_json(a), "binding",
+      a->ranked_count || a->binding == CB_NEEDS ? json_null()
+                                                : json_string(cb_need_name[a->binding]));
   const bool written =
       all && json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
   putchar('\n');

@@ -118,6 +118,9 @@ enum cb_status cb_job_create(const struct cb_variant *v, size_t threads,
                              const struct cb_bench_scene *scene,
                              const struct cb_step_parameters *step, struct cb_job *job);
 void cb_job_free(struct cb_job *job); /* zeroed is allowed */
+/* What a timer prepares and runs (cb_subject): back to the start; so many steps. */
+void cb_job_restore(void *job);
+void cb_job_steps(void *job, size_t repeats);
 
 struct cb_block;
 

@@ -36,21 +36,10 @@ struct session {
   size_t measured;
 };
 
-static void restore(void *context) {
-  struct cb_job *job = context;
-  memcpy(job->x, job->start_x, job->vector_bytes);
-  memcpy(job->v, job->start_v, job->vector_bytes);
-}
-
-static void run_steps(void *context, size_t repeats) {
-  struct cb_job *job = context;
-  for (size_t i = 0; i < repeats; i++) cb_stepper_step(job->stepper, job->x, job->v, NULL);
-}
-
 /* *step := median of a job's time, *fastest := the least, s. */
 static enum cb_status time_once(const struct cb_bench *b, struct cb_job *job,
                                 struct cb_interval *step, double *fastest) {
-  const struct cb_subject subject = {job->name, restore, run_steps, job};
+  const struct cb_subject subject = {job->name, cb_job_restore, cb_job_steps, job};
   const struct cb_timing timing = {.budget_s = STEPS_S,
                                    .min_rounds = MIN_ROUNDS,
                                    .max_rounds = ROUNDS,

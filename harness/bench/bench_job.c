@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <stdlib.h>
+#include <string.h>
 
 #include "harness/bench/bench.h"
 #include "harness/error.h"
@@ -63,4 +64,15 @@ void cb_job_free(struct cb_job *job) {
   free(job->x);
   free(job->v);
   *job = (struct cb_job){0};
+}
+
+void cb_job_restore(void *job) {
+  struct cb_job *j = job;
+  memcpy(j->x, j->start_x, j->vector_bytes);
+  memcpy(j->v, j->start_v, j->vector_bytes);
+}
+
+void cb_job_steps(void *job, size_t repeats) {
+  struct cb_job *j = job;
+  for (size_t i = 0; i < repeats; i++) cb_stepper_step(j->stepper, j->x, j->v, NULL);
 }
