@@ -198,16 +198,29 @@ static void conclude(struct way *w, struct cb_outcome *o, size_t steps) {
   o->net_force = !o->finite ? NAN : w->most_force > 0 ? w->most_net / w->most_force : 0;
 }
 
+static enum cb_status show(struct way *w, const struct cb_watch *watch, size_t step) {
+  if (!watch || step % watch->every) return CB_OK;
+  w->job.variant->arithmetic->to_double(w->body->at.mesh.nodes, w->job.x, w->x);
+  return watch->see(watch->context, (double)step * w->step.h, w->x);
+}
+
 enum cb_status cb_body_run(const struct cb_body *body, const struct cb_trial *trial,
                            struct cb_outcome *outcome) {
+  return cb_body_show(body, trial, NULL, outcome);
+}
+
+enum cb_status cb_body_show(const struct cb_body *body, const struct cb_trial *trial,
+                            const struct cb_watch *watch, struct cb_outcome *outcome) {
   struct way w;
   struct cb_outcome o = {.finite = true};
   enum cb_status status = open_way(body, trial, &w);
   size_t done = 0;
   const size_t between = w.steps / CB_SAMPLES;
+  if (!status) status = show(&w, watch, 0);
   while (!status && o.finite && done < w.steps) {
     status = step_once(&w, done++);
     if (!status && done % between == 0) look(&w, &o, done / between - 1);
+    if (!status) status = show(&w, watch, done);
   }
   if (!status) {
     conclude(&w, &o, done);

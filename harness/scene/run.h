@@ -30,11 +30,22 @@ struct cb_outcome {
   double seconds; /* of step_s, for a simulated second */
 };
 
+/* Who sees the body at its start and after every so many steps: positions x[3*nodes] at time
+ * t, s. What it returns ends the run unless it is CB_OK. */
+struct cb_watch {
+  size_t every;
+  enum cb_status (*see)(void *context, double t, const double *x);
+  void *context;
+};
+
 /* Step the body from its start to the end. A trial that breaks down is no failure:
  * outcome->finite says so. CB_INPUT if the variant does not take the material; CB_NUMERIC
  * when a direct solution fails; CB_MEMORY, CB_INTERRUPTED; all recorded. */
 enum cb_status cb_body_run(const struct cb_body *body, const struct cb_trial *trial,
                            struct cb_outcome *outcome);
+/* The same, watched. */
+enum cb_status cb_body_show(const struct cb_body *body, const struct cb_trial *trial,
+                            const struct cb_watch *watch, struct cb_outcome *outcome);
 
 /* The scene's truth: polar-exact, which has an energy, no torque and no order, solved
  * directly at a tenth of the step. */
