@@ -150,6 +150,32 @@ static void points_follow_an_affine_motion(void **state) {
   }
 }
 
+/* The surface of a shape is another one at every resolution. */
+static void points_of_a_shape_are_the_same_in_every_mesh(void **state) {
+  (void)state;
+  static const double resolutions[] = {0.4, 0.6, 1, 1.5};
+  static const char *const shapes[] = {"rabbit", "liver"};
+  for (size_t n = 0; n < 2; n++) {
+    struct cb_scene s = plain();
+    double p[3 * CB_POINTS], q[3 * CB_POINTS];
+    snprintf(s.shape, sizeof s.shape, "%s", shapes[n]);
+    s.cells[0] = 12, s.cell = 0.3;
+    for (size_t r = 0; r < 4; r++) {
+      struct cb_body b;
+      assert_int_equal(cb_body_create(&s, resolutions[r], &b), CB_OK);
+      cb_body_points(&b, b.at.mesh.X, r ? q : p);
+      for (size_t i = 0; r && i < 3 * CB_POINTS; i++) assert_true(fabs(q[i] - p[i]) < 1e-14);
+      /* continued by no more than some cells: strains at the surface are not blown up */
+      for (size_t i = 0; i < 4 * CB_POINTS; i++)
+        assert_true(fabs(b.point[i / 4].weight[i % 4]) < 5);
+      cb_body_free(&b);
+    }
+    double low = INFINITY, high = -INFINITY; /* they reach from end to end of the body */
+    for (size_t i = 0; i < 3 * CB_POINTS; i += 3) low = fmin(low, p[i]), high = fmax(high, p[i]);
+    assert_true(high - low > 0.9 * 0.3);
+  }
+}
+
 /* Backward Euler: v = g n h, x = g h^2 n (n + 1) / 2. */
 static void what_nothing_holds_falls(void **state) {
   (void)state;
@@ -327,6 +353,7 @@ int main(void) {
       cmocka_unit_test(a_bad_scene_is_refused_in_one_sentence),
       cmocka_unit_test(a_selection_needs_nodes),
       cmocka_unit_test(points_follow_an_affine_motion),
+      cmocka_unit_test(points_of_a_shape_are_the_same_in_every_mesh),
       cmocka_unit_test(what_nothing_holds_falls),
       cmocka_unit_test(handles_end_where_they_should),
       cmocka_unit_test(the_truth_is_the_limit),
