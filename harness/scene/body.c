@@ -48,8 +48,7 @@ static enum cb_status count_chosen(const struct cb_body *b, const struct cb_box 
   *count = 0;
   for (size_t i = 0; i < b->at.mesh.nodes; i++) *count += chosen(where, box, b->at.mesh.X + 3 * i);
   if (*count) return CB_OK;
-  return cb_fail(CB_INPUT, "scene '%s': no node lies in entry %zu of '%s'; widen its box",
-                 b->scene->name, n + 1, what);
+  return cb_scene_fail(b->scene, what, n, "holds no node; widen its box");
 }
 
 /* ---- what is held, moved and pushed ------------------------------------------------ */
@@ -99,10 +98,15 @@ static enum cb_status push(struct cb_body *b, const struct cb_box *box) {
   for (size_t n = 0; !status && n < s->load_count; n++) {
     const struct cb_load *load = &s->load[n];
     double mass = 0;
-    size_t count;
+    size_t count, free = 0;
     status = count_chosen(b, box, &load->where, "loads", n, &count);
     for (size_t i = 0; i < mesh->nodes; i++)
-      if (chosen(&load->where, box, mesh->X + 3 * i)) mass += b->at.mass[i];
+      if (chosen(&load->where, box, mesh->X + 3 * i)) {
+        mass += b->at.mass[i];
+        free += !b->at.fixed[i];
+      }
+    if (!status && !free)
+      status = cb_scene_fail(b->scene, "loads", n, "pushes only nodes that are held or moved");
     for (size_t i = 0; i < 3 * mesh->nodes; i++)
       if (chosen(&load->where, box, mesh->X + i / 3 * 3))
         b->external[i] += load->force[i % 3] * b->at.mass[i / 3] / mass;

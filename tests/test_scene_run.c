@@ -1,5 +1,5 @@
-/* Scene files: what is refused, and in which words; what is read; and what a body made
- * of one does.
+/* What a body made of a scene does: points, falls, handles, truth, costs; and the scenes that
+ * are shipped.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <math.h>
@@ -15,96 +15,6 @@
 #include "harness/scene/run.h"
 #include "harness/verify/counter.h"
 #include "tests/process.h"
-
-/* ---- reading --------------------------------------------------------------------- */
-
-static const char *const GOOD =
-    "{\n"
-    " \"about\": \"a block\",\n"
-    " \"geometry\": {\"block\": {\"cells\": [2, 2, 3], \"cell_m\": 0.1}},\n"
-    " \"material\": {\"young_pa\": 1e5, \"poisson\": 0.3, \"density_kg_m3\": 1000},\n"
-    " \"fixed\": [{\"face\": \"z-\"}],\n"
-    " \"loads\": [{\"low\": [0, 0, 1], \"high\": [1, 1, 1],\n"
-    "            \"force_n\": [1, 0, 0]}],\n"
-    " \"step_s\": 0.001,\n"
-    " \"duration_s\": 0.1,\n"
-    " \"needs\": {\"newton\": true, \"torque\": 1e-3}\n"
-    "}\n";
-
-/* GOOD with the first `from` replaced by `to`, as a file. */
-static const char *scene_file(const char *from, const char *to) {
-  const char *path = temporary_path("scene.json"), *at = strstr(GOOD, from);
-  FILE *f = fopen(path, "w");
-  assert_non_null(at);
-  fprintf(f, "%.*s%s%s", (int)(at - GOOD), GOOD, to, at + strlen(from));
-  fclose(f);
-  return path;
-}
-
-static void a_good_scene_is_read(void **state) {
-  (void)state;
-  struct cb_scene s;
-  assert_int_equal(cb_scene_read(scene_file("{", "{"), &s), CB_OK);
-  assert_string_equal(s.name, "scene");
-  assert_string_equal(s.about, "a block");
-  assert_true(s.cells[2] == 3 && s.cell == 0.1 && s.step == 0.001);
-  assert_true(s.fixed[0].low[2] == 0 && s.fixed[0].high[2] == 0 && s.fixed[0].high[0] == 1);
-  assert_true(s.load[0].force[0] == 1 && s.load_count == 1 && s.handle_count == 0);
-  assert_int_equal(s.needs.laws, CB_KEEPS(CB_LAW_NEWTON));
-  assert_true(s.needs.torque == 1e-3 && isinf(s.needs.displacement) && !s.needs.inversion);
-}
-
-static void a_bad_scene_is_refused_in_one_sentence(void **state) {
-  (void)state;
-  static const struct {
-    const char *from, *to;
-    int line;
-    const char *said;
-  } bad[] = {
-      {"young_pa", "young", 4, "'young' has no unit; write 'young_pa'"},
-      {"\"poisson\": 0.3", "\"poison\": 0.3", 4, "unknown key 'poison' (nearest: 'poisson')"},
-      {"\"poisson\": 0.3", "\"poisson\": 0.5", 4, "'poisson' is 0.5; it must be from -1 to 0.5"},
-      {"\"poisson\": 0.3", "\"poisson\": NaN", 4, "invalid token near 'NaN'"},
-      {"1e5", "1e999", 4, "real number overflow"},
-      {"1e5", "\"soft\"", 4, "'young_pa' must be a number"},
-      {"\"step_s\": 0.001,", "", 1, "'step_s' is missing"},
-      {"0.001", "0", 8, "'step_s' is 0; it must be from"},
-      {"\"step_s\": 0.001,", "\"step_s\": 0.001, \"step_s\": 1,", 8, "duplicate object key"},
-      {"[2, 2, 3]", "[2, 2.5, 3]", 3, "'cells' must be a whole number"},
-      {"[2, 2, 3]", "[2, 3]", 3, "'cells' must be three numbers in brackets"},
-      {"[2, 2, 3]", "[2, 0, 3]", 3, "'cells' is 0; it must be from 1 to 200"},
-      {"\"z-\"", "\"down\"", 5, "'face' is 'down'; it must be x-, x+, y-, y+, z- or z+"},
-      {"\"face\": \"z-\"", "", 5, "nodes are chosen by 'face', or by 'low' and 'high'"},
-      {"[1, 0, 0]", "[1, 0]", 7, "'force_n' must be three numbers in brackets"},
-      {"\"newton\": true", "\"newton\": 1", 10, "'newton' must be true or false"},
-      {"\"newton\"", "\"neuton\"", 10, "unknown key 'neuton' (nearest: 'newton')"},
-      {"0.1,\n \"needs\"", "1e-6,\n \"needs\"", 9, "'duration_s' is 0.001 steps of 'step_s'"},
-      {"[{\"face\": \"z-\"}]", "{}", 5, "'fixed' must be a list of objects in brackets"},
-  };
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    struct cb_scene s = {.step = 77};
-    char place[32];
-    const char *path = scene_file(bad[i].from, bad[i].to);
-    assert_int_equal(cb_scene_read(path, &s), CB_INPUT);
-    assert_true(s.step == 77); /* untouched */
-    snprintf(place, sizeof place, "scene.json:%d: ", bad[i].line);
-    if (!strstr(cb_error_message(), place) || !strstr(cb_error_message(), bad[i].said))
-      fail_msg("'%s' and '%s' are not both in: %s", place, bad[i].said, cb_error_message());
-  }
-  struct cb_scene s;
-  assert_int_equal(cb_scene_read(temporary_path("none.json"), &s), CB_IO);
-}
-
-static void a_selection_needs_nodes(void **state) {
-  (void)state;
-  struct cb_scene s;
-  struct cb_body b;
-  assert_int_equal(cb_scene_read(scene_file("\"low\": [0, 0, 1]", "\"low\": [0.1, 0, 1]"), &s),
-                   CB_OK);
-  s.load[0].where.high[0] = 0.2;
-  assert_int_equal(cb_body_create(&s, 1, &b), CB_INPUT);
-  assert_non_null(strstr(cb_error_message(), "no node lies in entry 1 of 'loads'"));
-}
 
 /* ---- bodies ------------------------------------------------------------------------- */
 
@@ -349,9 +259,6 @@ static void shipped_scenes_run(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_good_scene_is_read),
-      cmocka_unit_test(a_bad_scene_is_refused_in_one_sentence),
-      cmocka_unit_test(a_selection_needs_nodes),
       cmocka_unit_test(points_follow_an_affine_motion),
       cmocka_unit_test(points_of_a_shape_are_the_same_in_every_mesh),
       cmocka_unit_test(what_nothing_holds_falls),
