@@ -2,9 +2,10 @@
  * how the frame turns with x is not dropped. Isotropic materials.
  * Source: dR from Chao, Pinkall, Sanan & Schroeder 2010; eigenvalues clamped as
  *         in Smith, de Goes & Kim 2019; the world-axes form below: this project.
- * Trade:  6 more numbers an element and about a third more work in a product. Under
+ * Trade:  6 more numbers an element and a fifth more work in a product. Under
  *         compression the derivative is indefinite; clamped, it is a derivative no
- *         more, but conjugate gradients and Cholesky get what they need.
+ *         more, but conjugate gradients and Cholesky get what they need, at the price
+ *         of an eigenproblem.
  *
  * In world axes, w_j = R grad0_j, V = F R^T, Z = dF R^T = sum du_j (x) w_j and
  * [a]x = Z - Z^T, the frame turns by omega = (tr(V) I - V)^-1 a, and
@@ -22,23 +23,39 @@
 #define FRAME_ROTATION(e, F, memory, R) frame_polar_closed(F, R)
 #include "kernels/models/corotated.h"
 
-/* Below this, of tr(V) I - V, the frame of a much inverted element may jump: its
- * turning is bounded there. */
+/* tr(V) I - V has the sums of two stretches as eigenvalues, none negative. Where one
+ * is below this (a much inverted element, whose frame may jump; or a collapsed one)
+ * the turning is bounded: the sum, or their product, is taken to be larger. */
 #define LEAST_TURN LIT(1e-3)
 
-/* C (Voigt order) of V, symmetric. Clamped: no eigenvalue of C is negative. */
-INLINE void turning(T k, const T *V, bool clamped, T *C) {
+static const uint8_t voigt_row[6] = {0, 1, 2, 0, 1, 2}, voigt_column[6] = {0, 1, 2, 1, 2, 0};
+
+/* C (Voigt order) of V, symmetric. */
+INLINE void turning(T k, const T *V, T *C) {
+  T trace = V[0] + V[4] + V[8], A[9], cofactor[9];
+  for (int i = 0; i < 9; i++) A[i] = i % 4 == 0 ? trace - V[i] : -V[i];
+  cofactor3(A, cofactor);
+  T det = dot3(A, cofactor);
+  T least = LEAST_TURN * (ABS(cofactor[0]) + ABS(cofactor[4]) + ABS(cofactor[8])) + LIT(1e-30);
+  T scale = (LIT(2) - k * (trace - LIT(3))) / SELECT(det > least, det, least);
+  for (int n = 0; n < 6; n++) {
+    C[n] = -(scale * cofactor[3 * voigt_row[n] + voigt_column[n]]);
+    if (n < 3) C[n] = LIT(1) + C[n];
+  }
+}
+
+/* The same, with eigenvalues below zero made zero: as the form of sym(Z) is never
+ * negative, and apart from that of a, this is the nearest semi-definite dP(dF). */
+INLINE void turning_clamped(T k, const T *V, T *C) {
   T trace = V[0] + V[4] + V[8], factor = LIT(2) - k * (trace - LIT(3)), A[9], lambda[3];
   jacobi_eigen(V, A, lambda);
   for (int i = 0; i < 3; i++) {
     T sum = trace - lambda[i]; /* of the two other stretches */
-    T least = SELECT(sum < LIT(0), -LEAST_TURN, LEAST_TURN);
-    lambda[i] = LIT(1) - factor / SELECT(ABS(sum) < LEAST_TURN, least, sum);
-    if (clamped) lambda[i] = SELECT(lambda[i] < LIT(0), LIT(0), lambda[i]);
+    lambda[i] = LIT(1) - factor / SELECT(sum > LEAST_TURN, sum, LEAST_TURN);
+    lambda[i] = SELECT(lambda[i] < LIT(0), LIT(0), lambda[i]);
   }
-  static const uint8_t row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
   for (int n = 0; n < 6; n++) {
-    const T *p = A + 3 * row[n], *q = A + 3 * column[n];
+    const T *p = A + 3 * voigt_row[n], *q = A + 3 * voigt_column[n];
     C[n] = lambda[0] * (p[0] * q[0]) + lambda[1] * (p[1] * q[1]) + lambda[2] * (p[2] * q[2]);
   }
 }
@@ -66,7 +83,10 @@ INLINE void tangent_ebe(const struct cb_elements *E, bool clamped, const T *rest
   for (int i = 0; i < 3; i++) /* symmetric but for rounding */
     for (int j = 0; j < i; j++)
       V[3 * i + j] = V[3 * j + i] = LIT(0.5) * (V[3 * i + j] + V[3 * j + i]);
-  turning(E->k, V, clamped, C);
+  if (clamped)
+    turning_clamped(E->k, V, C);
+  else
+    turning(E->k, V, C);
   STAGE(STAGE_FORCE);
   T scale = -(h * rest[REST_FORCE]);
   for (int i = 0; i < 9; i++) Z[i] = scale * (i % 4 == 0 ? V[i] - LIT(1) : V[i]);
@@ -87,21 +107,21 @@ INLINE void tangent_product(const struct cb_elements *E, const T *state, const T
 /* X[6][9] := c K_ij = k w_i w_j^T + w_j w_i^T + (w_i . w_j) I - [w_i]x C [w_j]x. */
 INLINE void tangent_blocks(const struct cb_elements *E, bool clamped, const T *rest, const T *e,
                            const T *ev, T h, T *X, T *f) {
-  T state[15], w[12], C[9];
+  T state[15], w[12], C[9], turned[27]; /* C [w_j]x of b, c, d */
   tangent_ebe(E, clamped, rest, e, ev, h, state, f);
   STAGE(STAGE_ASSEMBLY);
   full3(state + 9, C);
   for (int i = 0; i < 3; i++) w[i] = -(state[i] + state[3 + i] + state[6 + i]);
   for (int i = 0; i < 9; i++) w[3 + i] = state[i];
+  for (int j = 0; j < 3; j++) /* row r of C [w]x is row r of C, times w */
+    for (int r = 0; r < 3; r++) cross3(C + 3 * r, state + 3 * j, turned + 9 * j + 3 * r);
   for (int n = 0; n < 6; n++) {
     const T *p = w + 3 * cb_tet_edge[n][0], *q = w + 3 * cb_tet_edge[n][1];
+    const T *Y = turned + 9 * (cb_tet_edge[n][1] - 1);
     T both = dot3(p, q), *K = X + 9 * n;
-    for (int c = 0; c < 3; c++) { /* column c of C [q]x is C times q x unit vector c */
-      T turned[3], cross[3], column[3] = {LIT(0), LIT(0), LIT(0)};
-      column[(c + 1) % 3] = q[(c + 2) % 3];
-      column[(c + 2) % 3] = -q[(c + 1) % 3];
-      apply3(C, column, turned);
-      cross3(p, turned, cross);
+    for (int c = 0; c < 3; c++) {
+      T column[3] = {Y[c], Y[3 + c], Y[6 + c]}, cross[3];
+      cross3(p, column, cross);
       for (int r = 0; r < 3; r++) K[3 * r + c] = E->k * (p[r] * q[c]) + q[r] * p[c] - cross[r];
       K[4 * c] = K[4 * c] + both;
     }
@@ -128,6 +148,7 @@ INLINE void tangent_blocks(const struct cb_elements *E, bool clamped, const T *r
   STORAGE_EBE_PRODUCT(ID, iso)                                                                     \
   STORAGE_CLUSTER(ID, iso, update_clusters, ID##_ebe_iso)                                          \
   STORAGE_CLUSTER_PRODUCT(ID, iso, product_clusters_of_model)                                      \
+  STORAGE_BLOCKS(ID, iso, 0)                                                                       \
   STORAGE_ASSEMBLED(ID, iso, ID##_blocks_iso, TERMS_BLOCKS)                                        \
   const struct cb_model CB_NAME(cb_model_##ID) = {                                                 \
       .name = NAME,                                                                                \
@@ -137,6 +158,7 @@ INLINE void tangent_blocks(const struct cb_elements *E, bool clamped, const T *r
       .policy = POLICY_PRECOMPUTED,                                                                \
       .form = {[CB_EBE] = {FORM_EBE(ID, iso, 15), {NULL, NULL, 0}},                                \
                [CB_EBE_CLUSTER] = {FORM_CLUSTER(ID, iso, 15), {NULL, NULL, 0}},                    \
+               [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), {NULL, NULL, 0}},                          \
                [CB_CSR] = {{ID##_assembled_update_iso, CB_NAME(cb_product_csr), TERMS_BLOCKS},     \
                            {NULL, NULL, 0}},                                                       \
                [CB_BCSR] = {{ID##_assembled_update_iso, CB_NAME(cb_product_bcsr), TERMS_BLOCKS},   \
