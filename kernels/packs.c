@@ -257,6 +257,7 @@ static enum cb_status allocate(const struct units *U, const struct drafts *d, st
   P->order = malloc(P->slots * P->lanes);
   P->bytes += P->packs * sizeof *P->pack + U->shapes * sizeof *P->shape + P->slots * P->lanes;
   if (!P->pack || !P->shape || !P->order) return CB_MEMORY;
+  P->shapes = U->shapes;
   memcpy(P->shape, U->clusters->shape, U->shapes * sizeof *P->shape);
   return CB_OK;
 }

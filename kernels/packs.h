@@ -38,6 +38,7 @@ struct cb_packs {
   struct cb_chunk *chunk; /* [threads] */
   /* clusters only, else NULL */
   struct cb_pack *pack; /* [packs] */
+  size_t shapes;
   struct cb_template *shape;
   uint8_t *order; /* [slots][lanes] bits 2j and 2j + 1: which vertex of the shape is the
                      mesh's own vertex j; NULL: all are the same */

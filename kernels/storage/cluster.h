@@ -21,20 +21,26 @@ INLINE void add_cluster(S *vector, const uint32_t *node, size_t nodes, size_t li
   for (size_t j = 0; j < nodes; j++) add_to_nodes(vector, node + j * LANES, live, f + 3 * j);
 }
 
-INLINE void local_edges(const T *u, const uint8_t *vertex, T *e) {
-  const T *a = u + 3 * vertex[0];
-  for (int j = 0; j < 3; j++)
-    for (int i = 0; i < 3; i++) e[3 * j + i] = u[3 * vertex[j + 1] + i] - a[i];
+INLINE T *local_at(const T *u, uint16_t vertex) { return (T *)((char *)u + vertex); }
+
+INLINE void local_edges(const T *u, const uint16_t *vertex, T *e) {
+  const T *a = local_at(u, vertex[0]);
+  for (int j = 0; j < 3; j++) {
+    const T *b = local_at(u, vertex[j + 1]);
+    for (int i = 0; i < 3; i++) e[3 * j + i] = b[i] - a[i];
+  }
 }
 
 /* sum += f on b, c, d and minus their sum on a. */
-INLINE void add_locally(T *sum, const uint8_t *vertex, const T *f) {
+INLINE void add_locally(T *sum, const uint16_t *vertex, const T *f) {
   T all[12];
   for (int i = 0; i < 3; i++) all[i] = -(f[i] + f[3 + i] + f[6 + i]);
   for (int i = 0; i < 9; i++) all[3 + i] = f[i];
   STAGE(STAGE_SCATTER);
-  for (int j = 0; j < 4; j++)
-    for (int i = 0; i < 3; i++) sum[3 * vertex[j] + i] = sum[3 * vertex[j] + i] + all[3 * j + i];
+  for (int j = 0; j < 4; j++) {
+    T *at = local_at(sum, vertex[j]);
+    for (int i = 0; i < 3; i++) at[i] = at[i] + all[3 * j + i];
+  }
 }
 
 /* ---- the vertices' own order -------------------------------------------------- */
@@ -82,7 +88,7 @@ struct cluster_work {
 
 /* Rest data of a slot: kept, or made in made[REST_ISOTROPIC]. */
 INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *X,
-                             const uint8_t *vertex, const uint8_t *order, T *made) {
+                             const uint16_t *vertex, const uint8_t *order, T *made) {
   if (E->rest) return E->rest + slot * E->rest_numbers;
   T e[9], own[9];
   STAGE(STAGE_REST);
@@ -103,7 +109,7 @@ INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *
 INLINE void update_slot(struct cb_elements *E, struct cluster_work *W, size_t i, bool moving, T h,
                         update_pack_fn *update, bool keep_state) {
   const size_t slot = W->pack->slot + i;
-  const uint8_t *vertex = W->shape->vertex[i];
+  const uint16_t *vertex = W->shape->vertex[i];
   const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
   T made[REST_ISOTROPIC], e[9], own[9], ev[9], f[9], lost[18];
   T *state = E->state + slot * E->state_numbers;
@@ -169,7 +175,7 @@ INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S
       if (positions) load_cluster(E->x, node, shape->nodes, x);
       for (size_t n = 0; n < 3u * shape->nodes; n++) sum[n] = LIT(0);
       for (size_t i = 0; i < shape->tets; i++) {
-        const uint8_t *vertex = shape->vertex[i];
+        const uint16_t *vertex = shape->vertex[i];
         T e[9], du[9], f[9];
         STAGE(STAGE_PRODUCT);
         if (positions) local_edges(x, vertex, e);

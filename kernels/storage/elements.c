@@ -153,8 +153,8 @@ static void element_rest(const struct layout *L, const struct cb_mesh *mesh, con
  * lane; returns which vertices of the shape these are, two bits each. */
 static unsigned slot_nodes(const struct cb_packs *P, size_t p, size_t i, size_t lane,
                            uint32_t *tet) {
-  static const uint8_t single[4] = {0, 1, 2, 3};
-  const uint8_t *vertex = P->pack ? P->shape[P->pack[p].shape].vertex[i] : single;
+  static const uint16_t single[4] = {0, 1, 2, 3};
+  const uint16_t *vertex = P->pack ? P->shape[P->pack[p].shape].vertex[i] : single;
   const size_t first = P->pack ? P->pack[p].node : 4 * p;
   const unsigned code = P->order ? P->order[(P->pack[p].slot + i) * LANES + lane] : 0xe4;
   for (size_t j = 0; j < 4; j++)
@@ -292,6 +292,9 @@ static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh 
 static enum cb_status place_nodes(struct cb_elements *E) {
   if (E->nodes > UINT32_MAX / PLACES) return CB_INPUT;
   for (size_t i = 0; i < E->packs->nodes * LANES; i++) E->packs->node[i] *= PLACES;
+  for (size_t t = 0; E->packs->shape && t < E->packs->shapes; t++)
+    for (size_t i = 0; i < CB_CLUSTER_TETS; i++)
+      for (size_t j = 0; j < 4; j++) E->packs->shape[t].vertex[i][j] *= (uint16_t)(3 * sizeof(T));
   return CB_OK;
 }
 
