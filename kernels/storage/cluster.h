@@ -32,14 +32,15 @@ INLINE void local_edges(const T *u, const uint16_t *vertex, T *e) {
 }
 
 /* sum += f on b, c, d and minus their sum on a. */
-INLINE void add_locally(T *sum, const uint16_t *vertex, const T *f) {
+INLINE void add_locally(T *sum, const uint16_t *vertex, const uint16_t *from, const T *f) {
   T all[12];
   for (int i = 0; i < 3; i++) all[i] = -(f[i] + f[3 + i] + f[6 + i]);
   for (int i = 0; i < 9; i++) all[3 + i] = f[i];
   STAGE(STAGE_SCATTER);
   for (int j = 0; j < 4; j++) {
+    const T *old = local_at(sum, from[j]);
     T *at = local_at(sum, vertex[j]);
-    for (int i = 0; i < 3; i++) at[i] = at[i] + all[3 * j + i];
+    for (int i = 0; i < 3; i++) at[i] = old[i] + all[3 * j + i];
   }
 }
 
@@ -83,7 +84,7 @@ INLINE void gradients_to_shape(const uint8_t *order, T *g) {
 struct cluster_work {
   const struct cb_pack *pack;
   const struct cb_template *shape;
-  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS];
+  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS + 3];
 };
 
 /* Rest data of a slot: kept, or made in made[REST_ISOTROPIC]. */
@@ -121,7 +122,7 @@ INLINE void update_slot(struct cb_elements *E, struct cluster_work *W, size_t i,
   if (!keep_state) state[0] = rest[REST_W];
   update(E, rest, e, order ? own : e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
          keep_state ? state : lost, f);
-  add_locally(W->f, vertex, f);
+  add_locally(W->f, vertex, W->shape->sum[i], f);
 }
 
 /* Keeps REST_W in the state's place, and the positions, if there is room for them
@@ -131,6 +132,7 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
                             S *out, update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct cluster_work W;
+  for (size_t i = 0; i < 3; i++) W.f[NODE_NUMBERS + i] = LIT(0);
   if (E->x) {
     size_t first, last;
     cb_team_share(STRIDE * E->nodes, P->threads, thread, &first, &last);
@@ -145,7 +147,6 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
       if (!E->rest) load_cluster(E->X, node, W.shape->nodes, W.X);
       load_cluster(x, node, W.shape->nodes, W.x);
       if (v) load_cluster(v, node, W.shape->nodes, W.v);
-      for (size_t n = 0; n < 3u * W.shape->nodes; n++) W.f[n] = LIT(0);
       for (size_t i = 0; i < W.shape->tets; i++)
         update_slot(E, &W, i, v != NULL, LIT(h), update, E->x == NULL);
       add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
@@ -164,16 +165,17 @@ typedef void slot_product_fn(const struct cb_elements *E, size_t slot, product_p
 INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
                              slot_product_fn *product, bool positions, product_pack_fn *model) {
   const struct cb_packs *P = E->packs;
+  T sum[NODE_NUMBERS + 3];
+  for (size_t i = 0; i < 3; i++) sum[NODE_NUMBERS + i] = LIT(0);
   for (int part = 0; part < 3; part++) {
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
       const struct cb_pack *pack = &P->pack[p];
       const struct cb_template *shape = &P->shape[pack->shape];
       const uint32_t *node = P->node + (size_t)pack->node * LANES;
-      T local[NODE_NUMBERS], x[NODE_NUMBERS], sum[NODE_NUMBERS];
+      T local[NODE_NUMBERS], x[NODE_NUMBERS];
       load_cluster(u, node, shape->nodes, local);
       if (positions) load_cluster(E->x, node, shape->nodes, x);
-      for (size_t n = 0; n < 3u * shape->nodes; n++) sum[n] = LIT(0);
       for (size_t i = 0; i < shape->tets; i++) {
         const uint16_t *vertex = shape->vertex[i];
         T e[9], du[9], f[9];
@@ -181,7 +183,7 @@ INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S
         if (positions) local_edges(x, vertex, e);
         local_edges(local, vertex, du);
         product(E, pack->slot + i, model, e, du, f);
-        add_locally(sum, vertex, f);
+        add_locally(sum, vertex, shape->sum[i], f);
       }
       add_cluster(y, node, shape->nodes, pack->live, sum);
     }
