@@ -122,8 +122,8 @@ static void bake_order(struct cb_clusters *c, size_t t) {
     for (size_t n = c->first[t]; n < c->first[t + 1]; n++)
       same = same && c->order[TETS * n + i] == order;
     if (!same) continue;
-    uint16_t vertex[4];
-    memcpy(vertex, shape->vertex[i], sizeof vertex);
+    uint8_t vertex[4];
+    memcpy(vertex, shape->vertex[i], 4);
     for (size_t j = 0; j < 4; j++) shape->vertex[i][j] = vertex[cb_permutation[order][j]];
     for (size_t n = c->first[t]; n < c->first[t + 1]; n++) c->order[TETS * n + i] = 0;
   }

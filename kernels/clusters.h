@@ -16,7 +16,7 @@ enum { CB_CLUSTER_NODES = 8, CB_CLUSTER_TETS = 12 };
  * local nodes 0 to nodes-1. */
 struct cb_template {
   uint8_t nodes, tets;
-  uint16_t vertex[CB_CLUSTER_TETS][4], sum[CB_CLUSTER_TETS][4];
+  uint8_t vertex[CB_CLUSTER_TETS][4];
 };
 
 struct cb_clusters {

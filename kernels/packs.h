@@ -1,6 +1,6 @@
 /* packs.h - which elements are worked on together, by whom and when. A pack is
- * `lanes` units of the same shape, one a lane; a unit is a tetrahedron, or a
- * cluster of them (kernels/clusters.h). Every thread has a chunk of packs, in
+ * `lanes` units of the same shape, one a lane; a unit is a tetrahedron, or one or more
+ * clusters of them (kernels/cluster_joins.h). Every thread has a chunk of packs, in
  * three parts:
  *   0  packs with a node that a later thread's chunk has as well,
  *   1  packs whose nodes no other chunk has,
@@ -13,7 +13,7 @@
 #ifndef CB_PACKS_H
 #define CB_PACKS_H
 
-#include "kernels/clusters.h"
+#include "kernels/cluster_joins.h"
 
 struct cb_pack {
   uint32_t node; /* its node indices begin at node * lanes */
@@ -39,7 +39,7 @@ struct cb_packs {
   /* clusters only, else NULL */
   struct cb_pack *pack; /* [packs] */
   size_t shapes;
-  struct cb_template *shape;
+  struct cb_unit_shape *shape;
   uint8_t *order; /* [slots][lanes] bits 2j and 2j + 1: which vertex of the shape is the
                      mesh's own vertex j; NULL: all are the same */
   size_t bytes;   /* of every array here */

@@ -10,7 +10,7 @@
 #include "kernels/storage/drive.h"
 #include "kernels/team.h"
 
-enum { NODE_NUMBERS = 3 * CB_CLUSTER_NODES };
+enum { NODE_NUMBERS = 3 * CB_UNIT_NODES };
 
 INLINE void load_cluster(const S *vector, const uint32_t *node, size_t nodes, T *u) {
   for (size_t j = 0; j < nodes; j++) load_nodes(vector, node + j * LANES, u + 3 * j);
@@ -83,7 +83,7 @@ INLINE void gradients_to_shape(const uint8_t *order, T *g) {
 /* Numbers of a pack's nodes. */
 struct cluster_work {
   const struct cb_pack *pack;
-  const struct cb_template *shape;
+  const struct cb_unit_shape *shape;
   T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS + 3];
 };
 
@@ -171,7 +171,7 @@ INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
       const struct cb_pack *pack = &P->pack[p];
-      const struct cb_template *shape = &P->shape[pack->shape];
+      const struct cb_unit_shape *shape = &P->shape[pack->shape];
       const uint32_t *node = P->node + (size_t)pack->node * LANES;
       T local[NODE_NUMBERS], x[NODE_NUMBERS];
       load_cluster(u, node, shape->nodes, local);

@@ -293,14 +293,14 @@ static enum cb_status place_nodes(struct cb_elements *E) {
   if (E->nodes > UINT32_MAX / PLACES) return CB_INPUT;
   for (size_t i = 0; i < E->packs->nodes * LANES; i++) E->packs->node[i] *= PLACES;
   for (size_t t = 0; E->packs->shape && t < E->packs->shapes; t++) {
-    struct cb_template *shape = E->packs->shape + t;
-    unsigned met = 0;
-    for (size_t i = 0; i < CB_CLUSTER_TETS; i++)
+    struct cb_unit_shape *shape = E->packs->shape + t;
+    uint64_t met = 0;
+    for (size_t i = 0; i < shape->tets; i++)
       for (size_t j = 0; j < 4; j++) {
         const unsigned v = shape->vertex[i][j];
         shape->vertex[i][j] = (uint16_t)(3 * sizeof(T) * v);
-        shape->sum[i][j] = (uint16_t)(3 * sizeof(T) * (met >> v & 1 ? v : CB_CLUSTER_NODES));
-        met |= 1u << v;
+        shape->sum[i][j] = (uint16_t)(3 * sizeof(T) * (met >> v & 1 ? v : CB_UNIT_NODES));
+        met |= (uint64_t)1 << v;
       }
   }
   return CB_OK;
