@@ -15,6 +15,7 @@ static const uint8_t OWN = 255; /* a node that only the second has */
 /* How two units meet. */
 struct meeting {
   uint32_t first, second; /* shapes */
+  uint32_t part;          /* of both */
   uint8_t place[NODES];   /* node v of the second is node place[v] of the first, or OWN */
 };
 
@@ -54,7 +55,7 @@ static size_t nodes_of(const struct work *w, const struct cb_unit *unit, uint32_
 
 static struct meeting meeting_of(const struct work *w, const struct cb_unit *a,
                                  const struct cb_unit *b) {
-  struct meeting m = {a->shape, b->shape, {0}};
+  struct meeting m = {a->shape, b->shape, a->part, {0}};
   uint32_t p[NODES], q[NODES];
   const size_t nodes = nodes_of(w, a, p), others = nodes_of(w, b, q);
   for (size_t v = 0; v < others; v++) {
@@ -91,7 +92,7 @@ static enum cb_status add_pair(struct work *w, uint32_t a, uint32_t b) {
   const struct cb_unit_shape *s = w->u->shape + p->shape, *t = w->u->shape + q->shape;
   const size_t shared = w->shared[b];
   if (shared < FEWEST_SHARED || s->nodes + t->nodes - shared > NODES || s->tets + t->tets > TETS ||
-      p->clusters + q->clusters > CB_UNIT_CLUSTERS)
+      p->clusters + q->clusters > CB_UNIT_CLUSTERS || p->part != q->part)
     return CB_OK;
   struct pair *pair = cb_grown(w->pair, &w->room[0], w->pairs + 1, sizeof *pair);
   if (!pair) return CB_MEMORY;
@@ -183,16 +184,11 @@ static struct cb_unit_shape joined_shape(const struct cb_units *u, const struct 
   return s;
 }
 
-static uint8_t joined_part(uint8_t a, uint8_t b) {
-  return a == 0 || b == 0 ? 0 : a == 2 || b == 2 ? 2 : 1;
-}
-
 /* The second becomes empty. */
 static void join(struct cb_unit *a, struct cb_unit *b, uint32_t shape) {
   for (size_t k = 0; k < b->clusters; k++) a->cluster[a->clusters + k] = b->cluster[k];
   a->clusters = (uint8_t)(a->clusters + b->clusters);
   a->shape = shape;
-  a->part = joined_part(a->part, b->part);
   b->clusters = 0;
 }
 
