@@ -34,7 +34,7 @@ struct work {
   const struct cb_mesh *mesh;
   const struct cb_clusters *clusters;
   struct cb_units *u;
-  size_t begin, lanes; /* units of the thread: from begin on */
+  size_t begin, lanes;  /* units of the thread: from begin on */
   uint32_t *start, *at; /* of each node: units at[start[n]] to at[start[n+1]-1] */
   uint8_t *shared;      /* [units] nodes shared with the one that is looked at */
   uint32_t *near;       /* [units] those that share some */
@@ -46,8 +46,9 @@ struct work {
 static size_t nodes_of(const struct work *w, const struct cb_unit *unit, uint32_t *node) {
   const struct cb_unit_shape *s = w->u->shape + unit->shape;
   for (size_t v = 0; v < s->nodes; v++)
-    node[v] = w->clusters->node[CB_CLUSTER_NODES * (size_t)unit->cluster[s->source[v] / CB_CLUSTER_NODES] +
-                                s->source[v] % CB_CLUSTER_NODES];
+    node[v] =
+        w->clusters->node[CB_CLUSTER_NODES * (size_t)unit->cluster[s->node[v] / CB_CLUSTER_NODES] +
+                          s->node[v] % CB_CLUSTER_NODES];
   return s->nodes;
 }
 
@@ -99,8 +100,8 @@ static enum cb_status add_pair(struct work *w, uint32_t a, uint32_t b) {
   w->pair = pair;
   bool exchanged;
   const struct meeting m = seen_from_either(w, a, b, &exchanged);
-  w->pair[w->pairs++] = (struct pair){hash(&m), exchanged ? b : a, exchanged ? a : b,
-                                      (uint32_t)shared};
+  w->pair[w->pairs++] =
+      (struct pair){hash(&m), exchanged ? b : a, exchanged ? a : b, (uint32_t)shared};
   return CB_OK;
 }
 
@@ -174,12 +175,12 @@ static struct cb_unit_shape joined_shape(const struct cb_units *u, const struct 
   for (size_t v = 0; v < t->nodes; v++) {
     place[v] = m->place[v];
     if (place[v] != OWN) continue;
-    s.source[s.nodes] = (uint8_t)(t->source[v] + CB_CLUSTER_NODES * clusters);
+    s.node[s.nodes] = (uint8_t)(t->node[v] + CB_CLUSTER_NODES * clusters);
     place[v] = s.nodes++;
   }
   for (size_t i = 0; i < t->tets; i++, s.tets++) {
     for (size_t j = 0; j < 4; j++) s.vertex[s.tets][j] = place[t->vertex[i][j]];
-    s.from[s.tets] = (uint8_t)(t->from[i] + CB_CLUSTER_TETS * clusters);
+    s.tet[s.tets] = (uint8_t)(t->tet[i] + CB_CLUSTER_TETS * clusters);
   }
   return s;
 }
@@ -223,7 +224,8 @@ static enum cb_status find_runs(struct work *w, size_t *runs) {
   *runs = 0;
   qsort(w->pair, w->pairs, sizeof *w->pair, by_kind);
   for (size_t i = 0, n; i < w->pairs; i = n) {
-    for (n = i + 1; n < w->pairs && w->pair[n].kind == w->pair[i].kind; n++) {}
+    for (n = i + 1; n < w->pairs && w->pair[n].kind == w->pair[i].kind; n++) {
+    }
     if (n - i < w->lanes) continue;
     struct run *run = cb_grown(w->run, &w->room[1], *runs + 1, sizeof *run);
     if (!run) return CB_MEMORY;
@@ -259,11 +261,11 @@ static enum cb_status join_thread(struct work *w) {
 
 static enum cb_status add_cluster_shapes(const struct cb_clusters *c, struct cb_units *u) {
   for (size_t t = 0; t < c->templates; t++) {
-    struct cb_unit_shape s = {c->shape[t].nodes, c->shape[t].tets, {0}, {0}, {{0}}, {{0}}};
-    for (uint8_t v = 0; v < s.nodes; v++) s.source[v] = v;
+    struct cb_unit_shape s = {c->shape[t].nodes, c->shape[t].tets, {0}, {0}, {{0}}};
+    for (uint8_t v = 0; v < s.nodes; v++) s.node[v] = v;
     for (uint8_t i = 0; i < s.tets; i++) {
       for (size_t j = 0; j < 4; j++) s.vertex[i][j] = c->shape[t].vertex[i][j];
-      s.from[i] = i;
+      s.tet[i] = i;
     }
     if (add_shape(u, &s)) return CB_MEMORY;
   }
@@ -284,7 +286,8 @@ enum cb_status cb_units_create(const struct cb_mesh *mesh, const struct cb_clust
                    .shared = calloc(n, 1),
                    .near = malloc(n * sizeof *w.near)};
   enum cb_status status = CB_MEMORY;
-  if (made.unit && w.start && w.at && w.shared && w.near) status = add_cluster_shapes(clusters, &made);
+  if (made.unit && w.start && w.at && w.shared && w.near)
+    status = add_cluster_shapes(clusters, &made);
   for (size_t t = 0; t < threads && !status; t++) {
     w.begin = made.units;
     for (size_t s = 0; s < clusters->templates; s++)

@@ -15,9 +15,9 @@ enum { CB_UNIT_CLUSTERS = 4, CB_UNIT_NODES = 20, CB_UNIT_TETS = 40 };
 /* What units of one shape have in common. */
 struct cb_unit_shape {
   uint8_t nodes, tets;
-  uint8_t source[CB_UNIT_NODES];          /* CB_CLUSTER_NODES k + v: local node v of the k-th cluster */
-  uint8_t from[CB_UNIT_TETS]; /* CB_CLUSTER_TETS k + i: tetrahedron i of the k-th cluster */
-  uint16_t vertex[CB_UNIT_TETS][4], sum[CB_UNIT_TETS][4]; /* vertices as local nodes of the unit */
+  uint8_t node[CB_UNIT_NODES];     /* CB_CLUSTER_NODES k + v: node v of the k-th cluster */
+  uint8_t tet[CB_UNIT_TETS];       /* CB_CLUSTER_TETS k + i: tetrahedron i of the k-th cluster */
+  uint8_t vertex[CB_UNIT_TETS][4]; /* vertices as nodes of the unit */
 };
 
 /* One cluster, or several. */

@@ -21,16 +21,14 @@ struct units {
   uint64_t *users;  /* [nodes] threads whose units have the node; NULL: one thread */
 };
 
-static const struct cb_unit_shape single = {.nodes = 4, .tets = 1};
-
 static size_t nodes_in(const struct units *U, size_t shape) {
   if (U->joined.unit) return U->joined.shape[shape].nodes;
-  return U->clusters ? U->clusters->shape[shape].nodes : single.nodes;
+  return U->clusters ? U->clusters->shape[shape].nodes : 4;
 }
 
 static size_t tets_in(const struct units *U, size_t shape) {
   if (U->joined.unit) return U->joined.shape[shape].tets;
-  return U->clusters ? U->clusters->shape[shape].tets : single.tets;
+  return U->clusters ? U->clusters->shape[shape].tets : 1;
 }
 
 /* Before they are joined. */
@@ -42,7 +40,7 @@ static uint32_t node_of(const struct units *U, size_t unit, size_t j) {
   if (!U->clusters) return U->mesh->tet[4 * unit + j];
   if (!U->joined.unit) return U->clusters->node[CB_CLUSTER_NODES * unit + j];
   const struct cb_unit *u = U->joined.unit + unit;
-  const size_t source = U->joined.shape[u->shape].source[j];
+  const size_t source = U->joined.shape[u->shape].node[j];
   const size_t cluster = u->cluster[source / CB_CLUSTER_NODES];
   return U->clusters->node[CB_CLUSTER_NODES * cluster + source % CB_CLUSTER_NODES];
 }
@@ -51,8 +49,8 @@ static uint32_t node_of(const struct units *U, size_t unit, size_t j) {
 static size_t place_of(const struct units *U, size_t unit, size_t i) {
   if (!U->joined.unit) return CB_CLUSTER_TETS * unit + i;
   const struct cb_unit *u = U->joined.unit + unit;
-  const size_t from = U->joined.shape[u->shape].from[i];
-  return CB_CLUSTER_TETS * (size_t)u->cluster[from / CB_CLUSTER_TETS] + from % CB_CLUSTER_TETS;
+  const size_t source = U->joined.shape[u->shape].tet[i];
+  return CB_CLUSTER_TETS * (size_t)u->cluster[source / CB_CLUSTER_TETS] + source % CB_CLUSTER_TETS;
 }
 
 static uint32_t lowest_tet(const struct units *U, size_t unit, size_t tets) {
@@ -103,8 +101,7 @@ static enum cb_status distribute(struct units *U, size_t threads) {
   give_to_threads(U, threads, tets, unit_at);
   for (size_t s = 0; s < U->shapes; s++)
     for (size_t u = first_of(U, s); u < first_of(U, s + 1); u++)
-      for (size_t j = 0; j < nodes_in(U, s); j++)
-        U->users[node_of(U, u, j)] |= bit(U->thread[u]);
+      for (size_t j = 0; j < nodes_in(U, s); j++) U->users[node_of(U, u, j)] |= bit(U->thread[u]);
   for (size_t s = 0; s < U->shapes; s++)
     for (size_t u = first_of(U, s); u < first_of(U, s + 1); u++) {
       const uint64_t others = sharers(U, u, nodes_in(U, s));
@@ -245,8 +242,7 @@ static void make_chunk(const struct units *U, size_t thread, size_t first, const
     part[p->part]++;
     if (p->part == 1) continue;
     for (size_t l = 0; l < p->live; l++)
-      c->after[p->part / 2] |=
-          sharers(U, p->unit[l], nodes_in(U, p->shape)) & (bit(thread) - 1);
+      c->after[p->part / 2] |= sharers(U, p->unit[l], nodes_in(U, p->shape)) & (bit(thread) - 1);
   }
   for (size_t k = 0, at = first; k < 3; k++) c->part[k] = at, at += part[k];
   c->last_live = d->count > first ? d->draft[d->count - 1].live : 0;
@@ -292,6 +288,31 @@ static bool fill(const struct units *U, const struct drafts *d, struct cb_packs 
   return ordered;
 }
 
+static struct cb_corners corners_of(const uint8_t *vertex, uint32_t *met) {
+  struct cb_corners c;
+  for (size_t j = 0; j < 4; j++) {
+    c.vertex[j] = vertex[j];
+    c.sum[j] = *met >> vertex[j] & 1 ? vertex[j] : CB_UNIT_NODES;
+    *met |= (uint32_t)1 << vertex[j];
+  }
+  return c;
+}
+
+static enum cb_status fill_shapes(const struct cb_units *J, struct cb_packs *P) {
+  for (size_t s = 0; s < J->shapes; s++) P->all_corners += J->shape[s].tets;
+  P->shape = malloc(J->shapes * sizeof *P->shape);
+  P->corners = malloc(P->all_corners * sizeof *P->corners);
+  P->bytes += J->shapes * sizeof *P->shape + P->all_corners * sizeof *P->corners;
+  if (!P->shape || !P->corners) return CB_MEMORY;
+  for (size_t s = 0, at = 0; s < J->shapes; s++) {
+    const struct cb_unit_shape *shape = J->shape + s;
+    uint32_t met = 0;
+    P->shape[s] = (struct cb_pack_shape){shape->nodes, shape->tets, (uint32_t)at};
+    for (size_t i = 0; i < shape->tets; i++) P->corners[at++] = corners_of(shape->vertex[i], &met);
+  }
+  return CB_OK;
+}
+
 static enum cb_status allocate(const struct units *U, const struct drafts *d, struct cb_packs *P) {
   P->packs = d->count;
   for (size_t p = 0; p < d->count; p++) {
@@ -304,13 +325,10 @@ static enum cb_status allocate(const struct units *U, const struct drafts *d, st
   if (!P->node) return CB_MEMORY;
   if (!U->clusters) return CB_OK;
   P->pack = malloc(P->packs * sizeof *P->pack);
-  P->shape = malloc(U->shapes * sizeof *P->shape);
   P->order = malloc(P->slots * P->lanes);
-  P->bytes += P->packs * sizeof *P->pack + U->shapes * sizeof *P->shape + P->slots * P->lanes;
-  if (!P->pack || !P->shape || !P->order) return CB_MEMORY;
-  P->shapes = U->shapes;
-  memcpy(P->shape, U->joined.shape, U->shapes * sizeof *P->shape);
-  return CB_OK;
+  P->bytes += P->packs * sizeof *P->pack + P->slots * P->lanes;
+  if (!P->pack || !P->order) return CB_MEMORY;
+  return fill_shapes(&U->joined, P);
 }
 
 enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t threads,
@@ -361,6 +379,7 @@ void cb_packs_free(struct cb_packs *P) {
   free(P->chunk);
   free(P->pack);
   free(P->shape);
+  free(P->corners);
   free(P->order);
   free(P);
 }

@@ -15,6 +15,18 @@
 
 #include "kernels/cluster_joins.h"
 
+/* A tetrahedron of a shape: its vertices as local nodes; where their sums are before it
+ * adds to them: CB_UNIT_NODES, where there is zero, if it is the first that does. In
+ * numbers of nodes, until the storage makes places of them. */
+struct cb_corners {
+  uint16_t vertex[4], sum[4];
+};
+
+struct cb_pack_shape {
+  uint8_t nodes, tets;
+  uint32_t corners; /* those of its tetrahedra begin there */
+};
+
 struct cb_pack {
   uint32_t node; /* its node indices begin at node * lanes */
   uint32_t slot; /* its tetrahedra are the slots from here on */
@@ -38,11 +50,12 @@ struct cb_packs {
   struct cb_chunk *chunk; /* [threads] */
   /* clusters only, else NULL */
   struct cb_pack *pack; /* [packs] */
-  size_t shapes;
-  struct cb_unit_shape *shape;
-  uint8_t *order; /* [slots][lanes] bits 2j and 2j + 1: which vertex of the shape is the
-                     mesh's own vertex j; NULL: all are the same */
-  size_t bytes;   /* of every array here */
+  struct cb_pack_shape *shape;
+  size_t all_corners;
+  struct cb_corners *corners; /* [all_corners] of all shapes */
+  uint8_t *order;             /* [slots][lanes] bits 2j and 2j + 1: which vertex of the shape is the
+                                 mesh's own vertex j; NULL: all are the same */
+  size_t bytes;               /* of every array here */
 };
 
 /* clustered: units are clusters. CB_MEMORY; CB_INPUT: more than 2^32 numbers. */

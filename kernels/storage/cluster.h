@@ -1,7 +1,7 @@
-/* cluster.h - the loops over clusters (kernels/clusters.h): nodes are gathered and
- * scattered once a cluster, and its elements take them from there. Node numbers of
- * a pack of clusters stay in the first cache: u[3 j] to u[3 j + 2] are x, y, z of
- * its local node j.
+/* cluster.h - the loops over units of clusters (kernels/cluster_joins.h): nodes are
+ * gathered and scattered once a unit, and its elements take them from there. Numbers
+ * of a pack's nodes stay in the first cache: u[3 j] to u[3 j + 2] are x, y, z of its
+ * local node j; struct cb_corners has the bytes from u to them.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_CLUSTER_H
@@ -10,7 +10,7 @@
 #include "kernels/storage/drive.h"
 #include "kernels/team.h"
 
-enum { NODE_NUMBERS = 3 * CB_UNIT_NODES };
+enum { NODE_NUMBERS = 3 * CB_UNIT_NODES, SUM_NUMBERS = NODE_NUMBERS + 3 };
 
 INLINE void load_cluster(const S *vector, const uint32_t *node, size_t nodes, T *u) {
   for (size_t j = 0; j < nodes; j++) load_nodes(vector, node + j * LANES, u + 3 * j);
@@ -21,7 +21,14 @@ INLINE void add_cluster(S *vector, const uint32_t *node, size_t nodes, size_t li
   for (size_t j = 0; j < nodes; j++) add_to_nodes(vector, node + j * LANES, live, f + 3 * j);
 }
 
-INLINE T *local_at(const T *u, uint16_t vertex) { return (T *)((char *)u + vertex); }
+INLINE const T *local_at(const T *u, uint16_t place) {
+  return (const T *)((const char *)u + place);
+}
+
+/* The zero that sums begin with: what is stored binds, and so nothing is cleared. */
+INLINE void prepare_sums(T *sum) {
+  for (size_t i = NODE_NUMBERS; i < SUM_NUMBERS; i++) sum[i] = LIT(0);
+}
 
 INLINE void local_edges(const T *u, const uint16_t *vertex, T *e) {
   const T *a = local_at(u, vertex[0]);
@@ -32,15 +39,15 @@ INLINE void local_edges(const T *u, const uint16_t *vertex, T *e) {
 }
 
 /* sum += f on b, c, d and minus their sum on a. */
-INLINE void add_locally(T *sum, const uint16_t *vertex, const uint16_t *from, const T *f) {
+INLINE void add_locally(T *sum, const struct cb_corners *corners, const T *f) {
   T all[12];
   for (int i = 0; i < 3; i++) all[i] = -(f[i] + f[3 + i] + f[6 + i]);
   for (int i = 0; i < 9; i++) all[3 + i] = f[i];
   STAGE(STAGE_SCATTER);
   for (int j = 0; j < 4; j++) {
-    const T *old = local_at(sum, from[j]);
-    T *at = local_at(sum, vertex[j]);
-    for (int i = 0; i < 3; i++) at[i] = old[i] + all[3 * j + i];
+    const T *before = local_at(sum, corners->sum[j]);
+    T *at = (T *)local_at(sum, corners->vertex[j]);
+    for (int i = 0; i < 3; i++) at[i] = before[i] + all[3 * j + i];
   }
 }
 
@@ -83,8 +90,8 @@ INLINE void gradients_to_shape(const uint8_t *order, T *g) {
 /* Numbers of a pack's nodes. */
 struct cluster_work {
   const struct cb_pack *pack;
-  const struct cb_unit_shape *shape;
-  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS + 3];
+  const struct cb_pack_shape *shape;
+  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[SUM_NUMBERS];
 };
 
 /* Rest data of a slot: kept, or made in made[REST_ISOTROPIC]. */
@@ -110,19 +117,19 @@ INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *
 INLINE void update_slot(struct cb_elements *E, struct cluster_work *W, size_t i, bool moving, T h,
                         update_pack_fn *update, bool keep_state) {
   const size_t slot = W->pack->slot + i;
-  const uint16_t *vertex = W->shape->vertex[i];
+  const struct cb_corners *corners = E->packs->corners + W->shape->corners + i;
   const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
   T made[REST_ISOTROPIC], e[9], own[9], ev[9], f[9], lost[18];
   T *state = E->state + slot * E->state_numbers;
-  const T *rest = rest_of_slot(E, slot, W->X, vertex, order, made);
+  const T *rest = rest_of_slot(E, slot, W->X, corners->vertex, order, made);
   STAGE(STAGE_FRAME);
-  local_edges(W->x, vertex, e);
+  local_edges(W->x, corners->vertex, e);
   if (order) own_edges(order, e, own);
-  if (moving) local_edges(W->v, vertex, ev);
+  if (moving) local_edges(W->v, corners->vertex, ev);
   if (!keep_state) state[0] = rest[REST_W];
   update(E, rest, e, order ? own : e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
          keep_state ? state : lost, f);
-  add_locally(W->f, vertex, W->shape->sum[i], f);
+  add_locally(W->f, corners, f);
 }
 
 /* Keeps REST_W in the state's place, and the positions, if there is room for them
@@ -132,7 +139,7 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
                             S *out, update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct cluster_work W;
-  for (size_t i = 0; i < 3; i++) W.f[NODE_NUMBERS + i] = LIT(0);
+  prepare_sums(W.f);
   if (E->x) {
     size_t first, last;
     cb_team_share(STRIDE * E->nodes, P->threads, thread, &first, &last);
@@ -165,25 +172,25 @@ typedef void slot_product_fn(const struct cb_elements *E, size_t slot, product_p
 INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
                              slot_product_fn *product, bool positions, product_pack_fn *model) {
   const struct cb_packs *P = E->packs;
-  T sum[NODE_NUMBERS + 3];
-  for (size_t i = 0; i < 3; i++) sum[NODE_NUMBERS + i] = LIT(0);
+  T sum[SUM_NUMBERS];
+  prepare_sums(sum);
   for (int part = 0; part < 3; part++) {
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
       const struct cb_pack *pack = &P->pack[p];
-      const struct cb_unit_shape *shape = &P->shape[pack->shape];
+      const struct cb_pack_shape *shape = &P->shape[pack->shape];
       const uint32_t *node = P->node + (size_t)pack->node * LANES;
       T local[NODE_NUMBERS], x[NODE_NUMBERS];
       load_cluster(u, node, shape->nodes, local);
       if (positions) load_cluster(E->x, node, shape->nodes, x);
       for (size_t i = 0; i < shape->tets; i++) {
-        const uint16_t *vertex = shape->vertex[i];
+        const struct cb_corners *corners = P->corners + shape->corners + i;
         T e[9], du[9], f[9];
         STAGE(STAGE_PRODUCT);
-        if (positions) local_edges(x, vertex, e);
-        local_edges(local, vertex, du);
+        if (positions) local_edges(x, corners->vertex, e);
+        local_edges(local, corners->vertex, du);
         product(E, pack->slot + i, model, e, du, f);
-        add_locally(sum, vertex, shape->sum[i], f);
+        add_locally(sum, corners, f);
       }
       add_cluster(y, node, shape->nodes, pack->live, sum);
     }

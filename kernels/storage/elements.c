@@ -154,7 +154,8 @@ static void element_rest(const struct layout *L, const struct cb_mesh *mesh, con
 static unsigned slot_nodes(const struct cb_packs *P, size_t p, size_t i, size_t lane,
                            uint32_t *tet) {
   static const uint16_t single[4] = {0, 1, 2, 3};
-  const uint16_t *vertex = P->pack ? P->shape[P->pack[p].shape].vertex[i] : single;
+  const uint16_t *vertex =
+      P->pack ? P->corners[P->shape[P->pack[p].shape].corners + i].vertex : single;
   const size_t first = P->pack ? P->pack[p].node : 4 * p;
   const unsigned code = P->order ? P->order[(P->pack[p].slot + i) * LANES + lane] : 0xe4;
   for (size_t j = 0; j < 4; j++)
@@ -288,20 +289,16 @@ static enum cb_status allocate(const struct cb_variant *v, const struct cb_mesh 
   return v->storage >= CB_CSR ? assembled_arrays(v, mesh, E) : CB_OK;
 }
 
-/* From node numbers, which nothing needs any more, to places (lanes.h). */
+/* From node numbers, which nothing needs any more, to places (lanes.h, cluster.h). */
 static enum cb_status place_nodes(struct cb_elements *E) {
   if (E->nodes > UINT32_MAX / PLACES) return CB_INPUT;
   for (size_t i = 0; i < E->packs->nodes * LANES; i++) E->packs->node[i] *= PLACES;
-  for (size_t t = 0; E->packs->shape && t < E->packs->shapes; t++) {
-    struct cb_unit_shape *shape = E->packs->shape + t;
-    uint64_t met = 0;
-    for (size_t i = 0; i < shape->tets; i++)
-      for (size_t j = 0; j < 4; j++) {
-        const unsigned v = shape->vertex[i][j];
-        shape->vertex[i][j] = (uint16_t)(3 * sizeof(T) * v);
-        shape->sum[i][j] = (uint16_t)(3 * sizeof(T) * (met >> v & 1 ? v : CB_UNIT_NODES));
-        met |= (uint64_t)1 << v;
-      }
+  for (size_t i = 0; i < E->packs->all_corners; i++) {
+    struct cb_corners *c = E->packs->corners + i;
+    for (size_t j = 0; j < 4; j++) {
+      c->vertex[j] = (uint16_t)(3 * sizeof(T) * c->vertex[j]);
+      c->sum[j] = (uint16_t)(3 * sizeof(T) * c->sum[j]);
+    }
   }
   return CB_OK;
 }
