@@ -27,7 +27,7 @@ struct pair {
 /* Pairs first to last-1 meet in the same way. */
 struct run {
   size_t first, last;
-  uint64_t saved;
+  uint64_t saved, apart; /* node visits; how far apart the two are in the mesh, in all */
 };
 
 struct work {
@@ -154,6 +154,7 @@ static int by_kind(const void *first, const void *second) {
 static int by_saving(const void *first, const void *second) {
   const struct run *a = first, *b = second;
   if (a->saved != b->saved) return a->saved > b->saved ? -1 : 1;
+  if (a->apart != b->apart) return a->apart < b->apart ? -1 : 1;
   return (a->first > b->first) - (a->first < b->first);
 }
 
@@ -219,18 +220,23 @@ static enum cb_status join_run(struct work *w, const struct run *run, uint8_t *u
   return CB_OK;
 }
 
+static uint32_t distance(const struct pair *p) {
+  return p->first < p->second ? p->second - p->first : p->first - p->second;
+}
+
 /* Runs that may fill a pack, those that save the most first. */
 static enum cb_status find_runs(struct work *w, size_t *runs) {
   *runs = 0;
   qsort(w->pair, w->pairs, sizeof *w->pair, by_kind);
   for (size_t i = 0, n; i < w->pairs; i = n) {
-    for (n = i + 1; n < w->pairs && w->pair[n].kind == w->pair[i].kind; n++) {
-    }
+    uint64_t apart = 0;
+    for (n = i; n < w->pairs && w->pair[n].kind == w->pair[i].kind; n++)
+      apart += distance(w->pair + n);
     if (n - i < w->lanes) continue;
     struct run *run = cb_grown(w->run, &w->room[1], *runs + 1, sizeof *run);
     if (!run) return CB_MEMORY;
     w->run = run;
-    w->run[(*runs)++] = (struct run){i, n, (uint64_t)(n - i) * w->pair[i].saved};
+    w->run[(*runs)++] = (struct run){i, n, (uint64_t)(n - i) * w->pair[i].saved, apart};
   }
   if (*runs) qsort(w->run, *runs, sizeof *w->run, by_saving);
   return CB_OK;
