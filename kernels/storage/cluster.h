@@ -11,6 +11,9 @@
 #include "kernels/team.h"
 
 enum { NODE_NUMBERS = 3 * CB_UNIT_NODES, SUM_NUMBERS = NODE_NUMBERS + 3 };
+/* Sums are half a page away from what is loaded, whose places a small unit then does
+ * not share in the lowest 12 bits: loads would wait for the stores. */
+enum { PAGE = 4096 / sizeof(T), LOADED = (NODE_NUMBERS + PAGE - 1) / PAGE * PAGE };
 
 INLINE void load_cluster(const S *vector, const uint32_t *node, size_t nodes, T *u) {
   for (size_t j = 0; j < nodes; j++) load_nodes(vector, node + j * LANES, u + 3 * j);
@@ -91,7 +94,7 @@ INLINE void gradients_to_shape(const uint8_t *order, T *g) {
 struct cluster_work {
   const struct cb_pack *pack;
   const struct cb_pack_shape *shape;
-  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[SUM_NUMBERS];
+  _Alignas(64) T X[LOADED], x[LOADED], v[LOADED], gap[PAGE / 2], f[SUM_NUMBERS];
 };
 
 /* Rest data of a slot: kept, or made in made[REST_ISOTROPIC]. */
@@ -172,27 +175,28 @@ typedef void slot_product_fn(const struct cb_elements *E, size_t slot, product_p
 INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
                              slot_product_fn *product, bool positions, product_pack_fn *model) {
   const struct cb_packs *P = E->packs;
-  T sum[SUM_NUMBERS];
-  prepare_sums(sum);
+  struct {
+    T u[LOADED], x[LOADED], gap[PAGE / 2], sum[SUM_NUMBERS];
+  } W;
+  prepare_sums(W.sum);
   for (int part = 0; part < 3; part++) {
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
       const struct cb_pack *pack = &P->pack[p];
       const struct cb_pack_shape *shape = &P->shape[pack->shape];
       const uint32_t *node = P->node + (size_t)pack->node * LANES;
-      T local[NODE_NUMBERS], x[NODE_NUMBERS];
-      load_cluster(u, node, shape->nodes, local);
-      if (positions) load_cluster(E->x, node, shape->nodes, x);
+      load_cluster(u, node, shape->nodes, W.u);
+      if (positions) load_cluster(E->x, node, shape->nodes, W.x);
       for (size_t i = 0; i < shape->tets; i++) {
         const struct cb_corners *corners = P->corners + shape->corners + i;
         T e[9], du[9], f[9];
         STAGE(STAGE_PRODUCT);
-        if (positions) local_edges(x, corners->vertex, e);
-        local_edges(local, corners->vertex, du);
+        if (positions) local_edges(W.x, corners->vertex, e);
+        local_edges(W.u, corners->vertex, du);
         product(E, pack->slot + i, model, e, du, f);
-        add_locally(sum, corners, f);
+        add_locally(W.sum, corners, f);
       }
-      add_cluster(y, node, shape->nodes, pack->live, sum);
+      add_cluster(y, node, shape->nodes, pack->live, W.sum);
     }
     part_end(E, thread, part);
   }
