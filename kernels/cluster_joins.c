@@ -280,7 +280,7 @@ static enum cb_status add_cluster_shapes(const struct cb_clusters *c, struct cb_
 
 enum cb_status cb_units_create(const struct cb_mesh *mesh, const struct cb_clusters *clusters,
                                const uint8_t *thread, const uint8_t *part, size_t lanes,
-                               size_t threads, struct cb_units *out) {
+                               size_t threads, bool joined, struct cb_units *out) {
   const size_t n = clusters->clusters + 1;
   struct cb_units made = {.unit = malloc(n * sizeof *made.unit)};
   struct work w = {.mesh = mesh,
@@ -301,7 +301,7 @@ enum cb_status cb_units_create(const struct cb_mesh *mesh, const struct cb_clust
         if (thread[c] == t)
           made.unit[made.units++] =
               (struct cb_unit){{(uint32_t)c}, (uint32_t)s, 1, (uint8_t)t, part[c]};
-    status = join_thread(&w);
+    if (joined) status = join_thread(&w);
   }
   free(w.start);
   free(w.at);

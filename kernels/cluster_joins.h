@@ -40,7 +40,7 @@ struct cb_units {
  * whole packs. thread, part: [clusters]. CB_MEMORY. */
 enum cb_status cb_units_create(const struct cb_mesh *mesh, const struct cb_clusters *clusters,
                                const uint8_t *thread, const uint8_t *part, size_t lanes,
-                               size_t threads, struct cb_units *out);
+                               size_t threads, bool joined, struct cb_units *out);
 void cb_units_free(struct cb_units *units); /* a zeroed one is allowed */
 
 #endif

@@ -117,10 +117,10 @@ static size_t drawer(const struct units *U, size_t thread, size_t shape, size_t 
   return (thread * U->shapes + shape) * 3 + part;
 }
 
-/* The clusters of each thread, joined where they can be. */
-static enum cb_status join(struct units *U, size_t lanes, size_t threads) {
+/* The clusters of each thread as units, joined or not. */
+static enum cb_status join(struct units *U, size_t lanes, size_t threads, bool joined) {
   struct cb_units *J = &U->joined;
-  if (cb_units_create(U->mesh, U->clusters, U->thread, U->part, lanes, threads, J))
+  if (cb_units_create(U->mesh, U->clusters, U->thread, U->part, lanes, threads, joined, J))
     return CB_MEMORY;
   U->count = J->units, U->shapes = J->shapes;
   const size_t drawers = threads * U->shapes * 3;
@@ -332,7 +332,7 @@ static enum cb_status allocate(const struct units *U, const struct drafts *d, st
 }
 
 enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t threads,
-                               bool clustered, struct cb_packs **out) {
+                               bool clustered, bool joined, struct cb_packs **out) {
   struct units U = {.mesh = mesh, .count = mesh->tets, .shapes = 1};
   struct drafts d = {0};
   struct cb_clusters *clusters = NULL;
@@ -346,7 +346,7 @@ enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t 
   if (status) goto done;
   if (clusters) U.clusters = clusters, U.count = clusters->clusters, U.shapes = clusters->templates;
   status = distribute(&U, threads);
-  if (!status && clusters) status = join(&U, lanes, threads);
+  if (!status && clusters) status = join(&U, lanes, threads, joined);
   if (!status) status = draft_packs(&U, P, &d);
   if (!status) status = allocate(&U, &d, P);
   if (status) goto done;

@@ -58,9 +58,9 @@ struct cb_packs {
   size_t bytes;               /* of every array here */
 };
 
-/* clustered: units are clusters. CB_MEMORY; CB_INPUT: more than 2^32 numbers. */
+/* clustered: units are clusters; joined: which are joined where that fills packs. CB_MEMORY; CB_INPUT: more than 2^32 numbers. */
 enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t threads,
-                               bool clustered, struct cb_packs **out);
+                               bool clustered, bool joined, struct cb_packs **out);
 /* The models do not depend on the order of vertices: forget the mesh's own. */
 void cb_packs_disorder(struct cb_packs *packs);
 void cb_packs_free(struct cb_packs *packs); /* NULL is allowed */
