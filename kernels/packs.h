@@ -58,7 +58,8 @@ struct cb_packs {
   size_t bytes;               /* of every array here */
 };
 
-/* clustered: units are clusters; joined: which are joined where that fills packs. CB_MEMORY; CB_INPUT: more than 2^32 numbers. */
+/* clustered: units are clusters; joined: which are joined where that fills packs. CB_MEMORY;
+ * CB_INPUT: more than 2^32 numbers. */
 enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t threads,
                                bool clustered, bool joined, struct cb_packs **out);
 /* The models do not depend on the order of vertices: forget the mesh's own. */

@@ -57,7 +57,7 @@ INLINE T join_nodes(const NODE *n) {
   return n[0];
 #else
   typedef S PAIR __attribute__((vector_size(8 * sizeof(S))));
-#if CB_LANES == 16 && defined __AVX512F__
+#if CB_LANES == 16 && defined __AVX512F__ /* gcc 12 would load all four apart */
   PAIR first = (PAIR)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)n[0]), (__m128)n[1], 1);
   PAIR second = (PAIR)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)n[2]), (__m128)n[3], 1);
   return (T)_mm512_insertf32x8(_mm512_castps256_ps512((__m256)first), (__m256)second, 1);
