@@ -28,6 +28,13 @@ enum cb_status cb_mesh_grid(size_t nx, size_t ny, size_t nz, double edge, struct
 enum cb_status cb_mesh_irregular(size_t nx, size_t ny, size_t nz, double edge, unsigned long seed,
                                  struct cb_mesh *mesh);
 
+/* "rabbit" or "liver": about `length` m long along x, z up, `cells` of the lattice to that
+ * length (at least 4); conforming, every tetrahedron positively oriented with a quality of at
+ * least 0.2 (6 sqrt 2 volumes by the cube of the root mean square edge: 1 if regular), in one
+ * piece. CB_INPUT, CB_MEMORY. */
+enum cb_status cb_mesh_shape(const char *name, size_t cells, double length, struct cb_mesh *mesh);
+bool cb_mesh_is_shape(const char *name);
+
 /* Read by the name's ending: .node or .ele (TetGen pair, either names both; 0-
  * or 1-based, comments, attributes and markers skipped) or .msh (Gmsh 2.2 and
  * 4.1, ASCII; elements that are not 4-node tetrahedra are skipped). Nodes that

@@ -20,6 +20,11 @@ static enum cb_status make_mesh(const struct cb_scene *s, double resolution, str
     for (size_t i = 0; !status && i < 3 * mesh->nodes; i++) mesh->X[i] *= s->scale;
     return status ? status : cb_order_apply(mesh);
   }
+  if (s->shape[0]) {
+    const double along = fmax(4, round(resolution * (double)s->cells[0]));
+    enum cb_status status = cb_mesh_shape(s->shape, (size_t)along, s->cell, mesh);
+    return status ? status : cb_order_apply(mesh);
+  }
   for (int i = 0; i < 3; i++) cells[i] = (size_t)fmax(1, round(resolution * (double)s->cells[i]));
   enum cb_status status = cb_mesh_grid(cells[0], cells[1], cells[2], 1, mesh);
   /* of the same size at every resolution, so its cells are not always cubes */

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "harness/files/mesh.h"
 #include "harness/scene/json.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -69,20 +70,35 @@ static enum cb_status read_mesh(struct cb_json *json, const json_t *object, stru
                       sizeof s->mesh_path - 1);
 }
 
+static enum cb_status read_shape(struct cb_json *json, const json_t *object, struct cb_scene *s) {
+  const char *name = NULL;
+  const struct cb_field fields[] = {{"name", CB_FIELD_TEXT, &name, 0, 0, true},
+                                    {"cells", CB_FIELD_COUNT, &s->cells[0], 4, 200, true},
+                                    {"length_m", CB_FIELD_NUMBER, &s->cell, TINY, ANY, true}};
+  enum cb_status status = read_object(json, "shape", object, fields, COUNT(fields));
+  if (status) return status;
+  snprintf(s->shape, sizeof s->shape, "%s", name);
+  if (cb_mesh_is_shape(s->shape)) return CB_OK;
+  cb_json_enter(json, "shape", 0);
+  return cb_json_fail(json, "there is no shape '%s'; 'name' must be rabbit or liver", name);
+}
+
 static enum cb_status read_geometry(struct cb_json *json, const json_t *object,
                                     struct cb_scene *s) {
-  json_t *block = NULL, *beam = NULL, *mesh = NULL;
+  json_t *block = NULL, *beam = NULL, *shape = NULL, *mesh = NULL;
   const struct cb_field fields[] = {{"block", CB_FIELD_OBJECT, &block, 0, 0, false},
                                     {"beam", CB_FIELD_OBJECT, &beam, 0, 0, false},
+                                    {"shape", CB_FIELD_OBJECT, &shape, 0, 0, false},
                                     {"mesh", CB_FIELD_OBJECT, &mesh, 0, 0, false}};
   cb_json_enter(json, "geometry", 0);
   enum cb_status status = cb_json_object(json, object, fields, COUNT(fields));
-  if (!status && (block != NULL) + (beam != NULL) + (mesh != NULL) != 1)
-    return cb_json_fail(json, "'geometry' must be one of 'block', 'beam' and 'mesh'");
+  if (!status && (block != NULL) + (beam != NULL) + (shape != NULL) + (mesh != NULL) != 1)
+    return cb_json_fail(json, "'geometry' must be one of 'block', 'beam', 'shape' and 'mesh'");
   if (!status)
-    status = block  ? read_block(json, block, s)
-             : beam ? read_beam(json, beam, s)
-                    : read_mesh(json, mesh, s);
+    status = block   ? read_block(json, block, s)
+             : beam  ? read_beam(json, beam, s)
+             : shape ? read_shape(json, shape, s)
+                     : read_mesh(json, mesh, s);
   if (!status) cb_json_leave(json);
   return status;
 }

@@ -43,9 +43,10 @@ struct cb_needs {
 
 struct cb_scene {
   char name[64], about[200];
-  char mesh_path[512]; /* "": a block of ten tetrahedra a cell */
-  size_t cells[3];     /* of the block */
-  double cell;         /* m */
+  char mesh_path[512]; /* of a mesh file; "": ... */
+  char shape[16];      /* ... a cb_mesh_shape; "": a block of ten tetrahedra a cell */
+  size_t cells[3];     /* of the block; of a shape the first, to its length */
+  double cell;         /* m; of a shape: its length */
   double scale;        /* of the mesh file's lengths */
   struct cb_material material;
   struct cb_selection fixed[CB_SCENE_LIST];
