@@ -9,7 +9,7 @@
 
 #include "kernels/cluster_shapes.h"
 
-enum { NODES = CB_UNIT_NODES, TETS = CB_UNIT_TETS, FEWEST_SHARED = 3, ROUNDS = 2 };
+enum { NODES = CB_UNIT_NODES, TETS = CB_UNIT_TETS, FEWEST_SHARED = 3, ROUNDS = 2, HUB = 256 };
 static const uint8_t OWN = 255; /* a node that only the second has */
 
 /* How two units meet. */
@@ -128,6 +128,7 @@ static enum cb_status find_pairs(struct work *w) {
     size_t nears = 0;
     for (size_t v = 0, n = nodes_of(w, w->u->unit + a, node); v < n; v++) {
       const uint32_t first = w->start[node[v]], last = w->start[node[v] + (size_t)1];
+      if (last - first > HUB) continue; /* the time must not grow with their square */
       for (uint32_t k = last; k-- > first && w->at[k] > a;)
         if (w->shared[w->at[k]]++ == 0) w->near[nears++] = w->at[k];
     }

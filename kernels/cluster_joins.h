@@ -35,9 +35,9 @@ struct cb_units {
   size_t room;                 /* of shape; private */
 };
 
-/* Each cluster in exactly one unit, whose clusters are all of one thread; its part is 0
- * if one of them has that, else 2, else 1. Joined units of each thread and shape fill
- * whole packs. thread, part: [clusters]. CB_MEMORY. */
+/* Each cluster in exactly one unit; joined: or several in one, all of the same thread
+ * and part; so many such units of a thread, a part and a shape as fill whole packs.
+ * thread, part: [clusters]. The same result for the same mesh. CB_MEMORY. */
 enum cb_status cb_units_create(const struct cb_mesh *mesh, const struct cb_clusters *clusters,
                                const uint8_t *thread, const uint8_t *part, size_t lanes,
                                size_t threads, bool joined, struct cb_units *out);
