@@ -1,7 +1,7 @@
 /* cluster_search.c - clusters grown one after the other from where the fewest free
  * tetrahedra are left, the densest first; those of rare shapes are dissolved and
  * their tetrahedra searched again for the frequent shapes: those that fill a pack,
- * then two.
+ * then, in a large mesh, two.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/cluster_search.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BUCKETS = 256, DENSE = 8, FULL_PACKS = 2 };
+enum { BUCKETS = 256, DENSE = 8, MANY = 128 };
 static const uint32_t NONE = UINT32_MAX;
 static const uint8_t UNTRIED = 255;
 
@@ -214,8 +214,10 @@ enum cb_status cb_search_create(const struct cb_mesh *mesh, size_t lanes, struct
   enum cb_status status = work_create(mesh, &made, &w);
   if (!status) status = cb_shapes_create(&made.shapes);
   if (!status) status = search_all(&w);
-  for (size_t packs = 1; packs <= FULL_PACKS && !status; packs++) {
-    status = dissolve(&w, packs * lanes);
+  if (!status) status = dissolve(&w, lanes);
+  if (!status) status = search_all(&w);
+  if (!status && made.clusters >= MANY * lanes) { /* else a shape of few may be all there is */
+    status = dissolve(&w, 2 * lanes);
     if (!status) status = search_all(&w);
   }
   work_free(&w);

@@ -129,7 +129,7 @@ static void units_are_a_partition(void **state) {
     }
     struct session s = session_new(rng, irregular_new(10), lanes, true);
     assert_session(&s, lanes);
-    assert_true(lanes > 4 || joined_units(&s.units) > 0);
+    assert_true(lanes > 2 || joined_units(&s.units) > 0);
     session_free(&s);
   }
   gsl_rng_free(rng);
