@@ -48,8 +48,7 @@ static enum cb_status count_chosen(const struct cb_body *b, const struct cb_box 
   *count = 0;
   for (size_t i = 0; i < b->at.mesh.nodes; i++) *count += chosen(where, box, b->at.mesh.X + 3 * i);
   if (*count) return CB_OK;
-  return cb_fail(CB_INPUT, "scene '%s': no node lies in entry %zu of '%s'; widen its box",
-                 b->scene->name, n + 1, what);
+  return cb_scene_fail(b->scene, what, n, "holds no node; widen its box");
 }
 
 /* ---- what is held, moved and pushed ------------------------------------------------ */
@@ -99,10 +98,15 @@ static enum cb_status push(struct cb_body *b, const struct cb_box *box) {
   for (size_t n = 0; !status && n < s->load_count; n++) {
     const struct cb_load *load = &s->load[n];
     double mass = 0;
-    size_t count;
+    size_t count, free = 0;
     status = count_chosen(b, box, &load->where, "loads", n, &count);
     for (size_t i = 0; i < mesh->nodes; i++)
-      if (chosen(&load->where, box, mesh->X + 3 * i)) mass += b->at.mass[i];
+      if (chosen(&load->where, box, mesh->X + 3 * i)) {
+        mass += b->at.mass[i];
+        free += !b->at.fixed[i];
+      }
+    if (!status && !free)
+      status = cb_scene_fail(b->scene, "loads", n, "pushes only nodes that are held or moved");
     for (size_t i = 0; i < 3 * mesh->nodes; i++)
       if (chosen(&load->where, box, mesh->X + i / 3 * 3))
         b->external[i] += load->force[i % 3] * b->at.mass[i / 3] / mass;
@@ -150,58 +154,21 @@ static void start(struct cb_body *b, const struct cb_box *box) {
 
 /* ---- points --------------------------------------------------------------------------- */
 
-/* weight[4] of p in the tetrahedron; returns the smallest. */
-static double weights(const struct cb_mesh *mesh, const uint32_t *tet, const double *p,
-                      double *weight) {
-  const double *a = mesh->X + 3 * tet[0];
-  double e[9], r[3], cof[9];
-  for (int j = 0; j < 9; j++) e[j] = mesh->X[3 * tet[1 + j / 3] + j % 3] - a[j % 3];
-  for (int k = 0; k < 3; k++) r[k] = p[k] - a[k];
-  for (int j = 0; j < 3; j++) {
-    const double *u = e + 3 * ((j + 1) % 3), *w = e + 3 * ((j + 2) % 3);
-    for (int k = 0; k < 3; k++)
-      cof[3 * j + k] = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
+/* Chosen in the scene's own mesh, found in this one. */
+static enum cb_status find_points(struct cb_body *b, double resolution) {
+  double P[3 * CB_POINTS];
+  struct cb_mesh own = {0};
+  enum cb_status status = resolution == 1 ? CB_OK : make_mesh(b->scene, 1, &own);
+  if (!status) {
+    cb_points_choose(resolution == 1 ? &b->at.mesh : &own, P);
+    cb_points_find(&b->at.mesh, P, b->point);
   }
-  const double volume = e[0] * cof[0] + e[1] * cof[1] + e[2] * cof[2];
-  weight[0] = 1;
-  for (int j = 0; j < 3; j++) {
-    const double *c = cof + 3 * j;
-    weight[j + 1] = (r[0] * c[0] + r[1] * c[1] + r[2] * c[2]) / volume;
-    weight[0] -= weight[j + 1];
-  }
-  return fmin(fmin(weight[0], weight[1]), fmin(weight[2], weight[3]));
-}
-
-/* A regular set of 4 x 4 x 4 places in the bounding box, each moved into the body:
- * to the nearest point of the tetrahedron that comes closest to holding it. */
-static void choose_points(struct cb_body *b, const struct cb_box *box) {
-  const struct cb_mesh *mesh = &b->at.mesh;
-  for (size_t n = 0; n < CB_POINTS; n++) {
-    struct cb_point *point = &b->point[n];
-    double p[3], best = -INFINITY, weight[4];
-    const size_t place[3] = {n % 4, n / 4 % 4, n / 16};
-    for (int k = 0; k < 3; k++)
-      p[k] = box->low[k] + (box->high[k] - box->low[k]) * (double)place[k] / 3;
-    for (size_t e = 0; e < mesh->tets; e++) {
-      const double inside = weights(mesh, mesh->tet + 4 * e, p, weight);
-      if (!(inside > best)) continue;
-      best = inside;
-      memcpy(point->node, mesh->tet + 4 * e, sizeof point->node);
-      memcpy(point->weight, weight, sizeof weight);
-    }
-    double sum = 0; /* of a body that is no box, some places are outside */
-    for (int j = 0; j < 4; j++) sum += point->weight[j] = fmax(0, point->weight[j]);
-    for (int j = 0; j < 4; j++) point->weight[j] /= sum;
-  }
+  cb_mesh_free(&own);
+  return status;
 }
 
 void cb_body_points(const struct cb_body *body, const double *x, double *p) {
-  for (size_t n = 0; n < CB_POINTS; n++)
-    for (int k = 0; k < 3; k++) {
-      p[3 * n + k] = 0;
-      for (int j = 0; j < 4; j++)
-        p[3 * n + k] += body->point[n].weight[j] * x[3 * body->point[n].node[j] + k];
-    }
+  cb_points_place(body->point, x, p);
 }
 
 /* ---- handles in time --------------------------------------------------------------------- */
@@ -237,7 +204,7 @@ void cb_body_grip(const struct cb_body *body, double t, double *x) {
 
 /* ---- the whole --------------------------------------------------------------------------- */
 
-static enum cb_status fill(struct cb_body *b) {
+static enum cb_status fill(struct cb_body *b, double resolution) {
   struct cb_bench_scene *at = &b->at;
   const size_t nodes = at->mesh.nodes;
   const struct cb_box box = cb_mesh_bounds(&at->mesh);
@@ -254,15 +221,14 @@ static enum cb_status fill(struct cb_body *b) {
   if (!status) status = push(b, &box);
   if (status) return status;
   start(b, &box);
-  choose_points(b, &box);
-  return CB_OK;
+  return find_points(b, resolution);
 }
 
 enum cb_status cb_body_create(const struct cb_scene *scene, double resolution,
                               struct cb_body *body) {
   struct cb_body made = {.scene = scene};
   enum cb_status status = make_mesh(scene, resolution, &made.at.mesh);
-  if (!status) status = fill(&made);
+  if (!status) status = fill(&made, resolution);
   if (status)
     cb_body_free(&made);
   else

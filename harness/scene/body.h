@@ -5,6 +5,7 @@
 #define CB_BODY_H
 
 #include "harness/bench/bench.h"
+#include "harness/scene/points.h"
 #include "harness/scene/scene.h"
 
 /* Nodes of one handle. */
@@ -15,21 +16,13 @@ struct cb_grip {
   double centre[3]; /* of its nodes at rest, m */
 };
 
-/* A point of the rest shape: weights of the four nodes of the tetrahedron that holds
- * it. The same points whatever the mesh, so that resolutions compare. */
-struct cb_point {
-  uint32_t node[4];
-  double weight[4];
-};
-enum { CB_POINTS = 64 };
-
 struct cb_body {
   const struct cb_scene *scene;
   struct cb_bench_scene at; /* mesh, material, mass, what is held, the start */
   double *external;         /* [3*nodes] N; NULL: no load and no gravity */
   struct cb_grip grip[CB_SCENE_LIST];
-  struct cb_point point[CB_POINTS];
-  double size; /* largest edge of the bounding box at rest, m */
+  struct cb_point point[CB_POINTS]; /* the same places at every resolution */
+  double size;                      /* largest edge of the bounding box at rest, m */
 };
 
 /* resolution: of a generated mesh, cells for each one of the scene's (0.5: half as

@@ -1,12 +1,11 @@
-/* json.c - see json.h. Jansson reads the file; it knows lines of syntax errors
- * only, so the line of a value is found by walking the text once more.
+/* json.c - see json.h. Jansson reads the file and knows the lines of syntax errors; those of
+ * values are found by lines.c.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "harness/scene/json.h"
 
-#include <ctype.h>
 #include <errno.h>
-#include <math.h>
+#include <float.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,75 +14,14 @@
 #include "harness/error.h"
 #include "harness/nearest.h"
 
-/* ---- lines ------------------------------------------------------------------ */
-
-/* The text is valid JSON: what follows only has to find its way. */
-static const char *skip_space(const char *t) {
-  while (isspace((unsigned char)*t)) t++;
-  return t;
-}
-
-static const char *skip_text(const char *t) { /* from the opening quote */
-  for (t++; *t != '"'; t++)
-    if (*t == '\\') t++;
-  return t + 1;
-}
-
-/* Past the value at t: to the comma or bracket that ends it. */
-static const char *skip_value(const char *t) {
-  int depth = 0;
-  for (; *t; t++) {
-    if (*t == '"') {
-      t = skip_text(t) - 1;
-      continue;
-    }
-    if (depth == 0 && strchr(",]}", *t)) break;
-    depth += *t == '{' || *t == '[';
-    depth -= *t == '}' || *t == ']';
-  }
-  return t;
-}
-
-static bool is_key(const char *quoted, const char *name, size_t length) {
-  return strncmp(quoted + 1, name, length) == 0 && quoted[1 + length] == '"';
-}
-
-/* The member `name` of the object or array at t, from its key on; NULL: none. */
-static const char *find_member(const char *t, const char *name, size_t length, bool to_value) {
-  const bool object = *t == '{';
-  unsigned long index = strtoul(name, NULL, 10);
-  for (t = skip_space(t + 1); *t && *t != '}' && *t != ']'; t = skip_space(t + (*t == ','))) {
-    const char *begin = t;
-    if (object) t = skip_space(skip_space(skip_text(t)) + 1); /* the colon */
-    if (object ? is_key(begin, name, length) : index-- == 0) return to_value ? t : begin;
-    t = skip_value(t);
-  }
-  return NULL;
-}
-
-/* Line of the deepest part of the place that is in the text. */
-static size_t line_of(const struct cb_json *json) {
-  const char *at = skip_space(json->text), *value = at;
-  for (const char *name = json->place; *name && (*value == '{' || *value == '[');) {
-    const size_t length = strcspn(name, "/");
-    const char *found = find_member(value, name, length, false);
-    if (!found) break;
-    at = found;
-    value = find_member(value, name, length, true);
-    name += length + (name[length] == '/');
-  }
-  size_t line = 1;
-  for (const char *t = json->text; t < at; t++) line += *t == '\n';
-  return line;
-}
-
 enum cb_status cb_json_fail(const struct cb_json *json, const char *format, ...) {
   char sentence[512];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
-  return cb_fail(CB_INPUT, "%s:%zu: %s", json->path, line_of(json), sentence);
+  return cb_fail(CB_INPUT, "%s:%zu: %s", json->path, cb_json_line(json->text, json->place),
+                 sentence);
 }
 
 void cb_json_enter(struct cb_json *json, const char *key, size_t index) {
@@ -148,19 +86,39 @@ static enum cb_status unknown_key(struct cb_json *json, const char *key,
   return cb_json_fail(json, "unknown key '%s' (nearest: %s)", key, nearest.names);
 }
 
+/* What stands there: "'force_n' is a list of 2". */
+static enum cb_status refuse(const struct cb_json *json, const struct cb_field *f,
+                             const json_t *value, const char *expected) {
+  char found[64] = "null";
+  if (json_is_number(value)) snprintf(found, sizeof found, "%g", json_number_value(value));
+  if (json_is_string(value)) snprintf(found, sizeof found, "a text");
+  if (json_is_object(value)) snprintf(found, sizeof found, "an object");
+  if (json_is_boolean(value)) snprintf(found, sizeof found, json_is_true(value) ? "true" : "false");
+  if (json_is_array(value)) snprintf(found, sizeof found, "a list of %zu", json_array_size(value));
+  return cb_json_fail(json, "'%s' is %s; it must be %s", f->key, found, expected);
+}
+
 static enum cb_status take_number(const struct cb_json *json, const struct cb_field *f,
                                   const json_t *value, double *number) {
-  if (!json_is_number(value)) return cb_json_fail(json, "'%s' must be a number", f->key);
+  char range[64];
+  if (!json_is_number(value)) return refuse(json, f, value, "a number");
   const double n = json_number_value(value);
-  if (!(n >= f->low && n <= f->high))
-    return cb_json_fail(json, "'%s' is %g; it must be from %g to %g", f->key, n, f->low, f->high);
-  *number = n;
-  return CB_OK;
+  if (n >= f->low && n <= f->high) {
+    *number = n;
+    return CB_OK;
+  }
+  if (f->high < DBL_MAX)
+    snprintf(range, sizeof range, "from %g to %g", f->low, f->high);
+  else if (f->low == DBL_MIN)
+    snprintf(range, sizeof range, "above 0");
+  else
+    snprintf(range, sizeof range, "at least %g", f->low);
+  return refuse(json, f, value, range);
 }
 
 static enum cb_status take_count(const struct cb_json *json, const struct cb_field *f,
                                  const json_t *value, size_t *count) {
-  if (!json_is_integer(value)) return cb_json_fail(json, "'%s' must be a whole number", f->key);
+  if (!json_is_integer(value)) return refuse(json, f, value, "a whole number");
   double number = 0;
   enum cb_status status = take_number(json, f, value, &number);
   if (!status) *count = (size_t)number;
@@ -170,7 +128,7 @@ static enum cb_status take_count(const struct cb_json *json, const struct cb_fie
 static enum cb_status take_three(const struct cb_json *json, const struct cb_field *f,
                                  const json_t *value) {
   if (!json_is_array(value) || json_array_size(value) != 3)
-    return cb_json_fail(json, "'%s' must be three numbers in brackets", f->key);
+    return refuse(json, f, value, "three numbers in brackets");
   enum cb_status status = CB_OK;
   double numbers[3];
   size_t counts[3];
@@ -188,10 +146,12 @@ static enum cb_status take_three(const struct cb_json *json, const struct cb_fie
 
 static enum cb_status take_list(const struct cb_json *json, const struct cb_field *f,
                                 json_t *value) {
-  bool good = json_is_array(value);
-  for (size_t i = 0; good && i < json_array_size(value); i++)
-    good = json_is_object(json_array_get(value, i));
-  if (!good) return cb_json_fail(json, "'%s' must be a list of objects in brackets", f->key);
+  static const char *const EXPECTED = "a list of objects in brackets";
+  if (!json_is_array(value)) return refuse(json, f, value, EXPECTED);
+  for (size_t i = 0; i < json_array_size(value); i++)
+    if (!json_is_object(json_array_get(value, i)))
+      return cb_json_fail(json, "entry %zu of '%s' is no object; '%s' must be %s", i + 1, f->key,
+                          f->key, EXPECTED);
   *(json_t **)f->value = value;
   return CB_OK;
 }
@@ -204,16 +164,15 @@ static enum cb_status take(const struct cb_json *json, const struct cb_field *f,
   case CB_FIELD_COUNTS: return take_three(json, f, value);
   case CB_FIELD_LIST: return take_list(json, f, value);
   case CB_FIELD_FLAG:
-    if (!json_is_boolean(value)) return cb_json_fail(json, "'%s' must be true or false", f->key);
+    if (!json_is_boolean(value)) return refuse(json, f, value, "true or false");
     *(bool *)f->value = json_is_true(value);
     return CB_OK;
   case CB_FIELD_TEXT:
-    if (!json_is_string(value)) return cb_json_fail(json, "'%s' must be a text", f->key);
+    if (!json_is_string(value)) return refuse(json, f, value, "a text");
     *(const char **)f->value = json_string_value(value);
     return CB_OK;
   case CB_FIELD_OBJECT:
-    if (!json_is_object(value))
-      return cb_json_fail(json, "'%s' must be an object in braces", f->key);
+    if (!json_is_object(value)) return refuse(json, f, value, "an object in braces");
     *(json_t **)f->value = value;
     return CB_OK;
   }
@@ -237,4 +196,12 @@ enum cb_status cb_json_object(struct cb_json *json, const json_t *object,
     if (fields[i].required && !json_object_get(object, fields[i].key))
       return cb_json_fail(json, "'%s' is missing", fields[i].key);
   return CB_OK;
+}
+
+enum cb_status cb_json_member(struct cb_json *json, const char *key, const json_t *object,
+                              const struct cb_field *fields, size_t count) {
+  cb_json_enter(json, key, 0);
+  enum cb_status status = cb_json_object(json, object, fields, count);
+  if (!status) cb_json_leave(json);
+  return status;
 }

@@ -37,11 +37,14 @@ struct cb_field {
   const char *key;
   enum cb_field_kind kind;
   void *value;      /* untouched if the key is absent */
-  double low, high; /* of every number; both included */
+  double low, high; /* of every number; both included; DBL_MIN: above 0 */
   bool required;
 };
 /* Every key of the object must be among the fields. */
 enum cb_status cb_json_object(struct cb_json *json, const json_t *object,
+                              const struct cb_field *fields, size_t count);
+/* The same of an object that is the member `key` of where the reader is. */
+enum cb_status cb_json_member(struct cb_json *json, const char *key, const json_t *object,
                               const struct cb_field *fields, size_t count);
 /* Go into a member (key, or with key NULL the index) of where the reader is, and
  * out again: for the place that is named in messages. */
@@ -50,5 +53,9 @@ void cb_json_leave(struct cb_json *json);
 /* Record "path:line: <sentence>", line of where the reader is; CB_INPUT. */
 enum cb_status cb_json_fail(const struct cb_json *json, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/* Line, from 1, of the deepest part of the place ("loads/1/force_n") that is in the text,
+ * which is valid JSON: jansson keeps no lines of values. A key is found as it is spelt. */
+size_t cb_json_line(const char *text, const char *place);
 
 #endif

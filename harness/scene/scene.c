@@ -8,112 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "harness/files/mesh.h"
-#include "harness/scene/json.h"
+#include "harness/error.h"
+#include "harness/scene/parts.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 static const double ANY = DBL_MAX, TINY = DBL_MIN;
-
-/* An object that stands under that key of the place where the reader is. */
-static enum cb_status read_object(struct cb_json *json, const char *key, const json_t *object,
-                                  const struct cb_field *fields, size_t count) {
-  cb_json_enter(json, key, 0);
-  enum cb_status status = cb_json_object(json, object, fields, count);
-  if (!status) cb_json_leave(json);
-  return status;
-}
-
-/* ---- geometry and material ---------------------------------------------------- */
-
-static enum cb_status read_block(struct cb_json *json, const json_t *object, struct cb_scene *s) {
-  const struct cb_field fields[] = {{"cells", CB_FIELD_COUNTS, s->cells, 1, 200, true},
-                                    {"cell_m", CB_FIELD_NUMBER, &s->cell, TINY, ANY, true}};
-  return read_object(json, "block", object, fields, COUNT(fields));
-}
-
-/* A beam along x, of square section. */
-static enum cb_status read_beam(struct cb_json *json, const json_t *object, struct cb_scene *s) {
-  double length = 0, width = 0;
-  size_t across = 0;
-  const struct cb_field fields[] = {{"length_m", CB_FIELD_NUMBER, &length, TINY, ANY, true},
-                                    {"width_m", CB_FIELD_NUMBER, &width, TINY, ANY, true},
-                                    {"cells_across", CB_FIELD_COUNT, &across, 1, 100, true}};
-  enum cb_status status = read_object(json, "beam", object, fields, COUNT(fields));
-  if (status) return status;
-  s->cell = width / (double)across;
-  const double along = round(length / s->cell);
-  if (!(along >= 1 && along <= 10000 && fabs(along * s->cell - length) < 1e-9 * length)) {
-    cb_json_enter(json, "beam", 0);
-    return cb_json_fail(json,
-                        "length_m over width_m times cells_across is %g cells along the beam; it "
-                        "must be a whole number from 1 to 10000",
-                        length / s->cell);
-  }
-  s->cells[0] = (size_t)along, s->cells[1] = s->cells[2] = across;
-  return CB_OK;
-}
-
-static enum cb_status read_mesh(struct cb_json *json, const json_t *object, struct cb_scene *s) {
-  const char *file = NULL;
-  const struct cb_field fields[] = {
-      {"file", CB_FIELD_TEXT, &file, 0, 0, true},
-      {"metres_per_unit", CB_FIELD_NUMBER, &s->scale, TINY, ANY, true}};
-  enum cb_status status = read_object(json, "mesh", object, fields, COUNT(fields));
-  if (status) return status;
-  const char *slash = strrchr(json->path, '/');
-  const int folder = file[0] == '/' || !slash ? 0 : (int)(slash + 1 - json->path);
-  const int length =
-      snprintf(s->mesh_path, sizeof s->mesh_path, "%.*s%s", folder, json->path, file);
-  if (file[0] && length > 0 && (size_t)length < sizeof s->mesh_path) return CB_OK;
-  cb_json_enter(json, "mesh", 0);
-  return cb_json_fail(json, "'file' must be a path of 1 to %zu characters",
-                      sizeof s->mesh_path - 1);
-}
-
-static enum cb_status read_shape(struct cb_json *json, const json_t *object, struct cb_scene *s) {
-  const char *name = NULL;
-  const struct cb_field fields[] = {{"name", CB_FIELD_TEXT, &name, 0, 0, true},
-                                    {"cells", CB_FIELD_COUNT, &s->cells[0], 4, 200, true},
-                                    {"length_m", CB_FIELD_NUMBER, &s->cell, TINY, ANY, true}};
-  enum cb_status status = read_object(json, "shape", object, fields, COUNT(fields));
-  if (status) return status;
-  snprintf(s->shape, sizeof s->shape, "%s", name);
-  if (cb_mesh_is_shape(s->shape)) return CB_OK;
-  cb_json_enter(json, "shape", 0);
-  return cb_json_fail(json, "there is no shape '%s'; 'name' must be rabbit or liver", name);
-}
-
-static enum cb_status read_geometry(struct cb_json *json, const json_t *object,
-                                    struct cb_scene *s) {
-  json_t *block = NULL, *beam = NULL, *shape = NULL, *mesh = NULL;
-  const struct cb_field fields[] = {{"block", CB_FIELD_OBJECT, &block, 0, 0, false},
-                                    {"beam", CB_FIELD_OBJECT, &beam, 0, 0, false},
-                                    {"shape", CB_FIELD_OBJECT, &shape, 0, 0, false},
-                                    {"mesh", CB_FIELD_OBJECT, &mesh, 0, 0, false}};
-  cb_json_enter(json, "geometry", 0);
-  enum cb_status status = cb_json_object(json, object, fields, COUNT(fields));
-  if (!status && (block != NULL) + (beam != NULL) + (shape != NULL) + (mesh != NULL) != 1)
-    return cb_json_fail(json, "'geometry' must be one of 'block', 'beam', 'shape' and 'mesh'");
-  if (!status)
-    status = block   ? read_block(json, block, s)
-             : beam  ? read_beam(json, beam, s)
-             : shape ? read_shape(json, shape, s)
-                     : read_mesh(json, mesh, s);
-  if (!status) cb_json_leave(json);
-  return status;
-}
-
-static enum cb_status read_material(struct cb_json *json, const json_t *object,
-                                    struct cb_scene *s) {
-  double young = 0, poisson = 0, density = 0;
-  const struct cb_field fields[] = {
-      {"young_pa", CB_FIELD_NUMBER, &young, 0, ANY, true},
-      {"poisson", CB_FIELD_NUMBER, &poisson, -1 + DBL_EPSILON, 0.5 - DBL_EPSILON, true},
-      {"density_kg_m3", CB_FIELD_NUMBER, &density, TINY, ANY, true}};
-  enum cb_status status = read_object(json, "material", object, fields, COUNT(fields));
-  if (!status) status = cb_material_isotropic(young, poisson, density, &s->material);
-  return status;
-}
 
 /* ---- what is held, pushed and moved --------------------------------------------- */
 
@@ -137,6 +36,10 @@ static enum cb_status to_selection(const struct cb_json *json, const struct chos
   if (c->face ? low || high : !low || !high)
     return cb_json_fail(json, "nodes are chosen by 'face', or by 'low' and 'high', corners in "
                               "fractions of the bounding box");
+  for (int k = 0; !c->face && k < 3; k++)
+    if (c->low[k] > c->high[k])
+      return cb_json_fail(json, "'low' is %g and 'high' %g along %c; 'low' must not be the higher",
+                          c->low[k], c->high[k], "xyz"[k]);
   if (!c->face) {
     memcpy(where->low, c->low, sizeof where->low);
     memcpy(where->high, c->high, sizeof where->high);
@@ -216,13 +119,13 @@ static enum cb_status read_start(struct cb_json *json, const json_t *object, str
       {"spin_rad_s", CB_FIELD_VECTOR, s->spin, -ANY, ANY, false},
       {"stretch", CB_FIELD_VECTOR, s->stretch, -ANY, ANY, false},
       {"twist_rad", CB_FIELD_NUMBER, &s->twist, -ANY, ANY, false}};
-  return read_object(json, "start", object, fields, COUNT(fields));
+  return cb_json_member(json, "start", object, fields, COUNT(fields));
 }
 
 static enum cb_status read_damping(struct cb_json *json, const json_t *object, struct cb_scene *s) {
   const struct cb_field fields[] = {{"stiffness_s", CB_FIELD_NUMBER, &s->alpha, 0, ANY, false},
                                     {"mass_1_s", CB_FIELD_NUMBER, &s->beta, 0, ANY, false}};
-  return read_object(json, "damping", object, fields, COUNT(fields));
+  return cb_json_member(json, "damping", object, fields, COUNT(fields));
 }
 
 static enum cb_status read_needs(struct cb_json *json, const json_t *object, struct cb_scene *s) {
@@ -238,13 +141,36 @@ static enum cb_status read_needs(struct cb_json *json, const json_t *object, str
       {"inversion", CB_FIELD_FLAG, &n->inversion, 0, 0, false}};
   for (size_t i = 0; i < COUNT(laws); i++)
     fields[5 + i] = (struct cb_field){cb_law_name[laws[i]], CB_FIELD_FLAG, &asked[i], 0, 0, false};
-  enum cb_status status = read_object(json, "needs", object, fields, COUNT(fields));
+  enum cb_status status = cb_json_member(json, "needs", object, fields, COUNT(fields));
   for (size_t i = 0; i < COUNT(laws); i++)
     if (asked[i]) n->laws |= CB_KEEPS(laws[i]);
   return status;
 }
 
 /* ---- the whole ------------------------------------------------------------------- */
+
+/* What no key is wrong in by itself. */
+static enum cb_status check_whole(struct cb_json *json, const char *about, struct cb_scene *s) {
+  const double steps = s->duration / s->step;
+  const size_t length = strlen(about);
+  if (!(steps >= 1 && steps <= 1e7)) {
+    cb_json_enter(json, "duration_s", 0);
+    return cb_json_fail(json, "'duration_s' is %g steps of 'step_s'; it must be 1 to 10000000",
+                        steps);
+  }
+  if (!length || length >= sizeof s->about) {
+    cb_json_enter(json, "about", 0);
+    return cb_json_fail(json, "'about' has %zu bytes; it must be a sentence of 1 to %zu", length,
+                        sizeof s->about - 1);
+  }
+  if (s->handle_count && s->alpha > 0) { /* the stepper takes what is held as standing still */
+    cb_json_enter(json, "damping", 0);
+    return cb_json_fail(json, "'stiffness_s' would drag on what moves with 'handles'; leave one "
+                              "out, or damp by 'mass_1_s'");
+  }
+  memcpy(s->about, about, length + 1);
+  return CB_OK;
+}
 
 static enum cb_status read_scene(struct cb_json *json, struct cb_scene *s) {
   const char *about = NULL;
@@ -263,22 +189,16 @@ static enum cb_status read_scene(struct cb_json *json, struct cb_scene *s) {
                                     {"duration_s", CB_FIELD_NUMBER, &s->duration, TINY, ANY, true},
                                     {"needs", CB_FIELD_OBJECT, &needs, 0, 0, true}};
   enum cb_status status = cb_json_object(json, json->root, fields, COUNT(fields));
-  if (!status) status = read_geometry(json, geometry, s);
-  if (!status) status = read_material(json, material, s);
+  if (!status) status = cb_scene_geometry(json, geometry, s);
+  if (!status) status = cb_scene_material(json, material, s);
   if (!status) status = read_list(json, "fixed", fixed, read_fixed, s, &s->fixed_count);
   if (!status) status = read_list(json, "loads", loads, read_load, s, &s->load_count);
   if (!status) status = read_list(json, "handles", handles, read_handle, s, &s->handle_count);
   if (!status && start) status = read_start(json, start, s);
   if (!status && damping) status = read_damping(json, damping, s);
   if (!status) status = read_needs(json, needs, s);
-  if (status) return status;
-  snprintf(s->about, sizeof s->about, "%s", about);
-  cb_json_enter(json, "duration_s", 0);
-  const double steps = s->duration / s->step;
-  if (!(steps >= 1 && steps <= 1e7))
-    return cb_json_fail(json, "'duration_s' is %g steps of 'step_s'; it must be 1 to 10000000",
-                        steps);
-  return CB_OK;
+  if (!status) status = check_whole(json, about, s);
+  return status;
 }
 
 static void name_scene(const char *path, char name[64]) {
@@ -294,9 +214,25 @@ enum cb_status cb_scene_read(const char *path, struct cb_scene *scene) {
                        .stretch = {1, 1, 1},
                        .needs = {.displacement = INFINITY, .torque = INFINITY, .energy = INFINITY}};
   name_scene(path, s.name);
+  snprintf(s.path, sizeof s.path, "%s", path);
   enum cb_status status = cb_json_open(path, &json);
   if (!status) status = read_scene(&json, &s);
   cb_json_close(&json);
   if (!status) *scene = s;
+  return status;
+}
+
+enum cb_status cb_scene_fail(const struct cb_scene *scene, const char *list, size_t n,
+                             const char *sentence) {
+  struct cb_json json;
+  enum cb_status status = cb_json_open(scene->path, &json);
+  if (!status) {
+    cb_json_enter(&json, list, 0);
+    cb_json_enter(&json, NULL, n);
+    status = cb_json_fail(&json, "entry %zu of '%s' %s", n + 1, list, sentence);
+  } else
+    status =
+        cb_fail(CB_INPUT, "scene '%s': entry %zu of '%s' %s", scene->name, n + 1, list, sentence);
+  cb_json_close(&json);
   return status;
 }

@@ -43,6 +43,7 @@ struct cb_needs {
 
 struct cb_scene {
   char name[64], about[200];
+  char path[512];      /* of its file, or "": for messages */
   char mesh_path[512]; /* of a mesh file; "": ... */
   char shape[16];      /* ... a cb_mesh_shape; "": a block of ten tetrahedra a cell */
   size_t cells[3];     /* of the block; of a shape the first, to its length */
@@ -56,7 +57,7 @@ struct cb_scene {
   double gravity[3];           /* m/s^2 */
   double velocity[3], spin[3]; /* at the start, m/s, rad/s about the centre of mass */
   double stretch[3], twist;    /* at the start: 1; rad about z, from foot to head */
-  double alpha, beta;          /* Rayleigh damping, s, 1/s */
+  double alpha, beta;          /* Rayleigh damping, s, 1/s; alpha = 0 with handles */
   double step, duration;       /* s */
   struct cb_needs needs;
 };
@@ -64,5 +65,10 @@ struct cb_scene {
 /* Read scenes/NAME.json, name: the file's without .json. CB_INPUT with file, line, what
  * was found and what was expected; CB_IO, CB_MEMORY. */
 enum cb_status cb_scene_read(const char *path, struct cb_scene *scene);
+
+/* Record "path:line: entry <n + 1> of '<list>' <sentence>", line of that entry in the
+ * scene's file; CB_INPUT. Of a scene without a file: "scene '<name>': ...". */
+enum cb_status cb_scene_fail(const struct cb_scene *scene, const char *list, size_t n,
+                             const char *sentence);
 
 #endif

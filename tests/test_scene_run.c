@@ -1,7 +1,8 @@
-/* Scene files: what is refused, and in which words; what is read; and what a body made
- * of one does.
+/* What a body made of a scene does: points, falls, handles, truth, costs; and the scenes that
+ * are shipped.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <glob.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,96 +16,6 @@
 #include "harness/scene/run.h"
 #include "harness/verify/counter.h"
 #include "tests/process.h"
-
-/* ---- reading --------------------------------------------------------------------- */
-
-static const char *const GOOD =
-    "{\n"
-    " \"about\": \"a block\",\n"
-    " \"geometry\": {\"block\": {\"cells\": [2, 2, 3], \"cell_m\": 0.1}},\n"
-    " \"material\": {\"young_pa\": 1e5, \"poisson\": 0.3, \"density_kg_m3\": 1000},\n"
-    " \"fixed\": [{\"face\": \"z-\"}],\n"
-    " \"loads\": [{\"low\": [0, 0, 1], \"high\": [1, 1, 1],\n"
-    "            \"force_n\": [1, 0, 0]}],\n"
-    " \"step_s\": 0.001,\n"
-    " \"duration_s\": 0.1,\n"
-    " \"needs\": {\"newton\": true, \"torque\": 1e-3}\n"
-    "}\n";
-
-/* GOOD with the first `from` replaced by `to`, as a file. */
-static const char *scene_file(const char *from, const char *to) {
-  const char *path = temporary_path("scene.json"), *at = strstr(GOOD, from);
-  FILE *f = fopen(path, "w");
-  assert_non_null(at);
-  fprintf(f, "%.*s%s%s", (int)(at - GOOD), GOOD, to, at + strlen(from));
-  fclose(f);
-  return path;
-}
-
-static void a_good_scene_is_read(void **state) {
-  (void)state;
-  struct cb_scene s;
-  assert_int_equal(cb_scene_read(scene_file("{", "{"), &s), CB_OK);
-  assert_string_equal(s.name, "scene");
-  assert_string_equal(s.about, "a block");
-  assert_true(s.cells[2] == 3 && s.cell == 0.1 && s.step == 0.001);
-  assert_true(s.fixed[0].low[2] == 0 && s.fixed[0].high[2] == 0 && s.fixed[0].high[0] == 1);
-  assert_true(s.load[0].force[0] == 1 && s.load_count == 1 && s.handle_count == 0);
-  assert_int_equal(s.needs.laws, CB_KEEPS(CB_LAW_NEWTON));
-  assert_true(s.needs.torque == 1e-3 && isinf(s.needs.displacement) && !s.needs.inversion);
-}
-
-static void a_bad_scene_is_refused_in_one_sentence(void **state) {
-  (void)state;
-  static const struct {
-    const char *from, *to;
-    int line;
-    const char *said;
-  } bad[] = {
-      {"young_pa", "young", 4, "'young' has no unit; write 'young_pa'"},
-      {"\"poisson\": 0.3", "\"poison\": 0.3", 4, "unknown key 'poison' (nearest: 'poisson')"},
-      {"\"poisson\": 0.3", "\"poisson\": 0.5", 4, "'poisson' is 0.5; it must be from -1 to 0.5"},
-      {"\"poisson\": 0.3", "\"poisson\": NaN", 4, "invalid token near 'NaN'"},
-      {"1e5", "1e999", 4, "real number overflow"},
-      {"1e5", "\"soft\"", 4, "'young_pa' must be a number"},
-      {"\"step_s\": 0.001,", "", 1, "'step_s' is missing"},
-      {"0.001", "0", 8, "'step_s' is 0; it must be from"},
-      {"\"step_s\": 0.001,", "\"step_s\": 0.001, \"step_s\": 1,", 8, "duplicate object key"},
-      {"[2, 2, 3]", "[2, 2.5, 3]", 3, "'cells' must be a whole number"},
-      {"[2, 2, 3]", "[2, 3]", 3, "'cells' must be three numbers in brackets"},
-      {"[2, 2, 3]", "[2, 0, 3]", 3, "'cells' is 0; it must be from 1 to 200"},
-      {"\"z-\"", "\"down\"", 5, "'face' is 'down'; it must be x-, x+, y-, y+, z- or z+"},
-      {"\"face\": \"z-\"", "", 5, "nodes are chosen by 'face', or by 'low' and 'high'"},
-      {"[1, 0, 0]", "[1, 0]", 7, "'force_n' must be three numbers in brackets"},
-      {"\"newton\": true", "\"newton\": 1", 10, "'newton' must be true or false"},
-      {"\"newton\"", "\"neuton\"", 10, "unknown key 'neuton' (nearest: 'newton')"},
-      {"0.1,\n \"needs\"", "1e-6,\n \"needs\"", 9, "'duration_s' is 0.001 steps of 'step_s'"},
-      {"[{\"face\": \"z-\"}]", "{}", 5, "'fixed' must be a list of objects in brackets"},
-  };
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    struct cb_scene s = {.step = 77};
-    char place[32];
-    const char *path = scene_file(bad[i].from, bad[i].to);
-    assert_int_equal(cb_scene_read(path, &s), CB_INPUT);
-    assert_true(s.step == 77); /* untouched */
-    snprintf(place, sizeof place, "scene.json:%d: ", bad[i].line);
-    if (!strstr(cb_error_message(), place) || !strstr(cb_error_message(), bad[i].said))
-      fail_msg("'%s' and '%s' are not both in: %s", place, bad[i].said, cb_error_message());
-  }
-  struct cb_scene s;
-  assert_int_equal(cb_scene_read(temporary_path("none.json"), &s), CB_IO);
-}
-
-static void a_selection_needs_nodes(void **state) {
-  (void)state;
-  struct cb_scene s;
-  struct cb_body b;
-  assert_int_equal(cb_scene_read(scene_file("\"low\": [0, 0, 1]", "\"low\": [0.1, 0, 1]"), &s),
-                   CB_OK);
-  s.load[0].where.high[0] = 0.2;
-  assert_int_equal(cb_body_create(&s, 1, &b), CB_INPUT);
-  assert_non_null(strstr(cb_error_message(), "no node lies in entry 1 of 'loads'"));
-}
 
 /* ---- bodies ------------------------------------------------------------------------- */
 
@@ -150,6 +61,32 @@ static void points_follow_an_affine_motion(void **state) {
   }
 }
 
+/* The surface of a shape is another one at every resolution. */
+static void points_of_a_shape_are_the_same_in_every_mesh(void **state) {
+  (void)state;
+  static const double resolutions[] = {0.4, 0.6, 1, 1.5};
+  static const char *const shapes[] = {"rabbit", "liver"};
+  for (size_t n = 0; n < 2; n++) {
+    struct cb_scene s = plain();
+    double p[3 * CB_POINTS], q[3 * CB_POINTS];
+    snprintf(s.shape, sizeof s.shape, "%s", shapes[n]);
+    s.cells[0] = 12, s.cell = 0.3;
+    for (size_t r = 0; r < 4; r++) {
+      struct cb_body b;
+      assert_int_equal(cb_body_create(&s, resolutions[r], &b), CB_OK);
+      cb_body_points(&b, b.at.mesh.X, r ? q : p);
+      for (size_t i = 0; r && i < 3 * CB_POINTS; i++) assert_true(fabs(q[i] - p[i]) < 1e-14);
+      /* continued by no more than some cells: strains at the surface are not blown up */
+      for (size_t i = 0; i < 4 * CB_POINTS; i++)
+        assert_true(fabs(b.point[i / 4].weight[i % 4]) < 5);
+      cb_body_free(&b);
+    }
+    double low = INFINITY, high = -INFINITY; /* they reach from end to end of the body */
+    for (size_t i = 0; i < 3 * CB_POINTS; i += 3) low = fmin(low, p[i]), high = fmax(high, p[i]);
+    assert_true(high - low > 0.9 * 0.3);
+  }
+}
+
 /* Backward Euler: v = g n h, x = g h^2 n (n + 1) / 2. */
 static void what_nothing_holds_falls(void **state) {
   (void)state;
@@ -188,6 +125,34 @@ static void handles_end_where_they_should(void **state) {
   /* iterated to the end is solved directly; and the same again */
   assert_true(cb_outcome_error(&cg, &direct, b.size) < 1e-9);
   assert_memory_equal(cg.point, again.point, sizeof cg.point);
+  cb_body_free(&b);
+}
+
+/* Everything that a right-hand side may have in it. */
+static void solved_directly_is_iterated_to_the_end(void **state) {
+  (void)state;
+  struct cb_scene s = plain();
+  struct cb_body b;
+  static struct cb_outcome cg, direct, other;
+  s.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}}, s.fixed_count = 1;
+  s.load[0] = (struct cb_load){{{0, 0, 1}, {1, 1, 1}}, {2, 0, 1}}, s.load_count = 1;
+  s.gravity[1] = -10, s.twist = 0.3, s.alpha = 2e-3, s.beta = 3;
+  assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
+  const struct cb_trial t = trial("polar-exact/ebe/f64", 80), d = trial("polar-exact/bcsr/f64", 0);
+  assert_int_equal(cb_body_run(&b, &t, &cg), CB_OK);
+  assert_int_equal(cb_body_run(&b, &d, &direct), CB_OK);
+  assert_true(cb_outcome_error(&cg, &direct, b.size) < 1e-9);
+  double *const parts[] = {&s.alpha, &s.beta, &s.gravity[1], &s.load[0].force[0]};
+  for (size_t i = 0; i < 4; i++) { /* and each of them is there */
+    const double kept = *parts[i];
+    struct cb_body without;
+    *parts[i] = 0;
+    assert_int_equal(cb_body_create(&s, 1, &without), CB_OK);
+    assert_int_equal(cb_body_run(&without, &d, &other), CB_OK);
+    assert_true(cb_outcome_error(&other, &direct, b.size) > 1e-5);
+    cb_body_free(&without);
+    *parts[i] = kept;
+  }
   cb_body_free(&b);
 }
 
@@ -299,40 +264,135 @@ static void what_is_absent_costs_nothing(void **state) {
 
 /* ---- the ones that are shipped ------------------------------------------------------------- */
 
+/* A shipped scene's body. */
+static struct cb_body shipped(const char *name, double resolution, struct cb_scene *s) {
+  char path[96];
+  struct cb_body b;
+  snprintf(path, sizeof path, "scenes/%s.json", name);
+  assert_int_equal(cb_scene_read(path, s), CB_OK);
+  assert_string_equal(s->name, name);
+  assert_int_equal(cb_body_create(s, resolution, &b), CB_OK);
+  return b;
+}
+
+static void run_at_own_step(const struct cb_body *b, const char *variant, size_t iterations,
+                            struct cb_outcome *o) {
+  struct cb_trial t = trial(variant, iterations);
+  t.step = b->scene->step;
+  assert_int_equal(cb_body_run(b, &t, o), CB_OK);
+  assert_true(o->finite);
+}
+
 static void shipped_scenes_run(void **state) {
+  (void)state;
+  glob_t files;
+  assert_int_equal(glob("scenes/*.json", 0, NULL, &files), 0);
+  assert_true(files.gl_pathc >= 6);
+  for (size_t n = 0; n < files.gl_pathc; n++) {
+    struct cb_scene s;
+    struct cb_body b;
+    static struct cb_outcome o;
+    assert_int_equal(cb_scene_read(files.gl_pathv[n], &s), CB_OK);
+    s.duration = 10 * s.step;
+    assert_int_equal(cb_body_create(&s, 0.6, &b), CB_OK);
+    run_at_own_step(&b, "polar-exact/ebe/f64", 20, &o);
+    assert_true(o.steps == 10 && o.torque < 1e-12);
+    cb_body_free(&b);
+  }
+  globfree(&files);
+}
+
+static double moved(const struct cb_body *b, const struct cb_outcome *o) {
+  double rest[3 * CB_POINTS], most = 0;
+  cb_body_points(b, b->at.mesh.X, rest);
+  for (size_t n = 0; n < CB_SAMPLES * CB_POINTS; n++) {
+    const double *p = o->point[n / CB_POINTS] + 3 * (n % CB_POINTS);
+    const double *P = rest + 3 * (n % CB_POINTS);
+    most = fmax(most, hypot(hypot(p[0] - P[0], p[1] - P[1]), p[2] - P[2]));
+  }
+  return most / b->size;
+}
+
+/* By how much the line between two corners turns about z, from look to look. */
+static double turned(const struct cb_outcome *o) {
+  double angle = 0, before = NAN;
+  for (size_t n = 0; n < CB_SAMPLES; n++) {
+    const double *p = o->point[n];
+    const double now = atan2(p[3 * 63 + 1] - p[1], p[3 * 63] - p[0]);
+    if (n) angle += remainder(now - before, 2 * M_PI);
+    before = now;
+  }
+  return fabs(angle);
+}
+
+static void shipped_scenes_are_what_they_say(void **state) {
+  (void)state;
+  static struct cb_outcome truth, o;
+  struct cb_scene s;
+  struct cb_body b = shipped("small-displacement", 1, &s);
+  run_at_own_step(&b, "polar-exact/bcsr/f64", 0, &o);
+  assert_true(moved(&b, &o) < 1e-3);
+  cb_body_free(&b);
+  b = shipped("small-displacement", 0.5, &s); /* linear is enough */
+  assert_int_equal(cb_body_truth(&b, &truth), CB_OK);
+  run_at_own_step(&b, "linear/bcsr/f64", 0, &o);
+  assert_true(cb_outcome_error(&o, &truth, b.size) <= s.needs.displacement);
+  cb_body_free(&b);
+
+  b = shipped("cantilever", 1, &s); /* bends far, and linear is not enough */
+  run_at_own_step(&b, "polar-exact/bcsr/f64", 0, &truth);
+  run_at_own_step(&b, "linear/bcsr/f64", 0, &o);
+  assert_true(moved(&b, &truth) > 0.5 && cb_outcome_error(&o, &truth, b.size) > 0.1);
+  cb_body_free(&b);
+
+  b = shipped("stiff", 1, &s); /* few iterations are not enough, many are */
+  assert_int_equal(cb_body_truth(&b, &truth), CB_OK);
+  run_at_own_step(&b, "polar-exact/ebe/f64", 5, &o);
+  assert_true(cb_outcome_error(&o, &truth, b.size) > 0.1);
+  run_at_own_step(&b, "polar-exact/ebe/f64", 100, &o);
+  assert_true(cb_outcome_error(&o, &truth, b.size) <= s.needs.displacement);
+  cb_body_free(&b);
+
+  b = shipped("spinning-body", 1, &s); /* from the first look to the last */
+  run_at_own_step(&b, "polar-exact/bcsr/f64", 0, &o);
+  assert_true(turned(&o) > 2.5 * 2 * M_PI && moved(&b, &o) > 1);
+  cb_body_free(&b);
+}
+
+/* Half its step moves the truth by half of its error; so that what is held against it is
+ * misjudged by no more than half of what the scene allows. */
+static void the_truth_is_closer_than_what_is_held_against_it(void **state) {
   (void)state;
   static const char *const names[] = {"block",         "cantilever",         "twisted-bar",
                                       "spinning-body", "small-displacement", "stiff"};
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
-    char path[64];
+    static struct cb_outcome truth, finer;
     struct cb_scene s;
-    struct cb_body b;
-    static struct cb_outcome o;
-    snprintf(path, sizeof path, "scenes/%s.json", names[n]);
-    assert_int_equal(cb_scene_read(path, &s), CB_OK);
-    assert_string_equal(s.name, names[n]);
-    s.duration = 10 * s.step;
-    assert_int_equal(cb_body_create(&s, 0.6, &b), CB_OK);
-    struct cb_trial t = trial("polar-exact/ebe/f64", 20);
-    t.step = s.step;
-    assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
-    assert_true(o.finite && o.steps == 10 && o.torque < 1e-12);
+    struct cb_body b = shipped(names[n], 0.5, &s);
+    struct cb_trial t = trial("polar-exact/bcsr/f64", 0);
+    t.step = s.step / 20;
+    assert_int_equal(cb_body_truth(&b, &truth), CB_OK);
+    assert_int_equal(cb_body_run(&b, &t, &finer), CB_OK);
+    const double error = cb_outcome_error(&truth, &finer, b.size);
+    if (!(error < s.needs.displacement / 4))
+      fail_msg("%s: the truth moves by %g, %g is needed", names[n], error, s.needs.displacement);
     cb_body_free(&b);
   }
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_good_scene_is_read),
-      cmocka_unit_test(a_bad_scene_is_refused_in_one_sentence),
-      cmocka_unit_test(a_selection_needs_nodes),
       cmocka_unit_test(points_follow_an_affine_motion),
+      cmocka_unit_test(points_of_a_shape_are_the_same_in_every_mesh),
       cmocka_unit_test(what_nothing_holds_falls),
       cmocka_unit_test(handles_end_where_they_should),
+      cmocka_unit_test(solved_directly_is_iterated_to_the_end),
       cmocka_unit_test(the_truth_is_the_limit),
       cmocka_unit_test(a_broken_run_is_an_outcome),
       cmocka_unit_test(what_is_absent_costs_nothing),
       cmocka_unit_test(shipped_scenes_run),
+      cmocka_unit_test(shipped_scenes_are_what_they_say),
+      cmocka_unit_test(the_truth_is_closer_than_what_is_held_against_it),
   };
   return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }
