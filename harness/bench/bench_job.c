@@ -74,5 +74,9 @@ void cb_job_restore(void *job) {
 
 void cb_job_steps(void *job, size_t repeats) {
   struct cb_job *j = job;
-  for (size_t i = 0; i < repeats; i++) cb_stepper_step(j->stepper, j->x, j->v, NULL);
+  for (size_t i = 0; i < repeats; i++) {
+    cb_stepper_step(j->stepper, j->x, j->v, NULL);
+    const enum cb_ending why = cb_stepper_ended(j->stepper).why;
+    j->lost |= why == CB_ENDED_INDEFINITE || why == CB_ENDED_OVERFLOW;
+  }
 }

@@ -176,7 +176,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static enum cb_status step_once(struct way *w, size_t n) {
+static enum cb_status step_once(struct way *w, size_t n, struct cb_outcome *o) {
   if (w->body->scene->handle_count) move_handles(w, (double)(n + 1) * w->step.h);
   const double begin = cb_timer_now();
   enum cb_status status = CB_OK;
@@ -185,6 +185,11 @@ static enum cb_status step_once(struct way *w, size_t n) {
   else
     cb_stepper_step(w->job.stepper, w->job.x, w->job.v, w->external);
   w->time[n] = cb_timer_now() - begin;
+  if (!w->direct) {
+    const enum cb_ending why = cb_stepper_ended(w->job.stepper).why;
+    o->indefinite += why == CB_ENDED_INDEFINITE;
+    if (why == CB_ENDED_OVERFLOW) o->finite = false;
+  }
   if (cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted while simulating");
   return status;
 }
@@ -218,7 +223,7 @@ enum cb_status cb_body_show(const struct cb_body *body, const struct cb_trial *t
   const size_t between = w.steps / CB_SAMPLES;
   if (!status) status = show(&w, watch, 0);
   while (!status && o.finite && done < w.steps) {
-    status = step_once(&w, done++);
+    status = step_once(&w, done++, &o);
     if (!status && done % between == 0) look(&w, &o, done / between - 1);
     if (!status) status = show(&w, watch, done);
   }

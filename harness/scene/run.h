@@ -25,6 +25,8 @@ struct cb_outcome {
   double torque, net_force;                /* of the elastic forces: largest |sum x x f| over
                                               largest sum |x - c||f|; |sum f| over sum |f| */
   size_t inverted;                         /* elements in the end */
+  size_t indefinite;                       /* steps whose conjugate gradients found the operator
+                                              not positive definite (cb_stepper_ended) */
   size_t steps;
   double step_s;  /* median time of a step; handles and looks are not in it */
   double seconds; /* of step_s, for a simulated second */

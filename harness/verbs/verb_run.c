@@ -83,11 +83,15 @@ static void print(const struct cb_body *body, const struct cb_trial *trial,
   printf("%s by %s, %zu iterations: %zu steps, %.3g us each, %.3g of real time.\n",
          body->scene->name, name, trial->iterations, o->steps, 1e6 * o->step_s, o->seconds);
   if (!o->finite)
-    printf("It breaks down: positions are not finite.\n");
+    printf("It breaks down: forces, velocities or positions are not finite.\n");
   else
     printf("In the end %zu of %zu elements are inverted; ghost torque up to %.2g, net force up to "
            "%.2g (relative).\n",
            o->inverted, body->at.mesh.tets, o->torque, o->net_force);
+  if (o->indefinite)
+    printf("In %zu steps the operator was not positive definite: conjugate gradients ended early "
+           "there.\n",
+           o->indefinite);
 }
 
 static enum cb_status simulate(const struct cb_body *body, const struct cb_options *o,
