@@ -8,6 +8,7 @@
 #include "harness/error.h"
 #include "harness/extremes/cases.h"
 #include "harness/extremes/report.h"
+#include "harness/verify/laws.h"
 #include "reference/oracles.h"
 
 enum { DOFS = 12 };
@@ -100,12 +101,18 @@ struct judge {
   struct cb_extreme *row;
 };
 
-static void breaks(const struct judge *j, const char *law, double value) {
-  if (!j->row->law[0] && !(value <= cb_extreme_limit)) j->row->law = law;
+/* A law is broken by what is beyond a thousand times what rounding explains, and by more
+ * than `verify` calls a broken one; NaN breaks it. value: in units of the first, of scale. */
+static void breaks(const struct judge *j, const char *law, double value, double unit,
+                   double scale) {
+  const double significant = cb_law_limit(j->v->arithmetic);
+  if (!j->row->law[0] && !(value <= cb_extreme_limit * unit) && !(value <= significant * scale))
+    j->row->law = law;
 }
 
-static void claims(const struct judge *j, enum cb_law law, double value) {
-  if (j->v->model->laws[0] & CB_KEEPS(law)) breaks(j, cb_law_name[law], value);
+static void claims(const struct judge *j, enum cb_law law, double value, double unit,
+                   double scale) {
+  if (j->v->model->laws[0] & CB_KEEPS(law)) breaks(j, cb_law_name[law], value, unit, scale);
 }
 
 /* Where the answer is finite but its exact value is no number of this arithmetic, or has
@@ -142,8 +149,8 @@ static void judge_frame(const struct judge *j) {
   row->frame_error = distance(9, R, k->R) / (u * k->condition);
   row->orthogonality = RR / u;
   row->determinant = det[0];
-  breaks(j, "orthogonal", row->orthogonality);
-  breaks(j, "determinant", fabs(det[0] - det[1]) / u);
+  breaks(j, "orthogonal", RR, u * k->condition, 1);
+  if (!(det[0] * det[1] > 0)) row->law = "handedness";
 }
 
 static void judge_force(const struct judge *j) {
@@ -163,9 +170,10 @@ static void judge_force(const struct judge *j) {
   j->row->force_error = distance(12, f, k->f) / k->f_unit;
   /* a flattened point has no arm: nothing turns it */
   j->row->torque = arm > 0 ? norm(3, torque) / (arm * k->f_unit) : 0;
-  claims(j, CB_LAW_NEWTON, norm(3, sum) / k->f_unit);
-  claims(j, CB_LAW_EULER, j->row->torque);
-  claims(j, CB_LAW_ROTATION, distance(12, f, back) / k->f_unit);
+  const double size = norm(12, f);
+  claims(j, CB_LAW_NEWTON, norm(3, sum), k->f_unit, size);
+  claims(j, CB_LAW_EULER, norm(3, torque), arm * k->f_unit, arm * size);
+  claims(j, CB_LAW_ROTATION, distance(12, f, back), k->f_unit, size);
 }
 
 static enum cb_status judge_operator(const struct judge *j) {
@@ -174,13 +182,14 @@ static enum cb_status judge_operator(const struct judge *j) {
     for (int q = 0; q < DOFS; q++) {
       const double there = j->K[DOFS * p + q], back = j->K[DOFS * q + p];
       skew = hypot(skew, there - back);
-      A[DOFS * p + q] = (there + back) / 2 / j->k->y_unit;
+      A[DOFS * p + q] = (there + back) / 2;
     }
-  j->row->product_error = distance(12, j->y, j->k->y) / j->k->y_unit;
-  claims(j, CB_LAW_SYMMETRIC, skew / j->k->y_unit);
+  const double unit = j->k->y_unit, size = norm(144, j->K);
+  j->row->product_error = distance(12, j->y, j->k->y) / unit;
+  claims(j, CB_LAW_SYMMETRIC, skew, unit, size);
   enum cb_status status = cb_oracle_eigenvalues(DOFS, A, eigen);
   if (status == CB_MEMORY) return status;
-  claims(j, CB_LAW_SEMIDEFINITE, status ? NAN : -eigen[0]);
+  claims(j, CB_LAW_SEMIDEFINITE, status ? NAN : -eigen[0], unit, size);
   return CB_OK;
 }
 

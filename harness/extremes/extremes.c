@@ -61,7 +61,8 @@ enum cb_extreme_state cb_extreme_state(const struct cb_extreme *row) {
   if (begins(row->note, "not judged") || begins(row->note, "by method")) return CB_NOT_JUDGED;
   if (!row->finite) return CB_NOT_FINITE;
   if (row->law[0]) return CB_BREAKS;
-  if (above(row->frame_error) || above(row->force_error) || above(row->product_error))
+  if (above(row->frame_error) || above(row->force_error) || above(row->product_error) ||
+      above(row->orthogonality))
     return CB_INACCURATE;
   return CB_RIGHT;
 }

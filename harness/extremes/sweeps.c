@@ -3,7 +3,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "harness/extremes/extremes.h"
 
-#define SWEEPS(X) X(values)
+#define SWEEPS(X)                                                                                  \
+  X(regular)                                                                                       \
+  X(inverted)                                                                                      \
+  X(flat)                                                                                          \
+  X(collapsed)                                                                                     \
+  X(turned)                                                                                        \
+  X(near)
 
 #define DECLARE(name) extern const struct cb_sweep cb_sweep_##name;
 #define LIST(name) &cb_sweep_##name,
