@@ -123,6 +123,8 @@ void cb_job_free(struct cb_job *job); /* zeroed is allowed */
  * `lost`. */
 void cb_job_restore(void *job);
 void cb_job_steps(void *job, size_t repeats);
+/* Is a node vector of the job finite? work[3*nodes]. */
+bool cb_job_finite(const struct cb_job *job, const void *vector, double *work);
 
 struct cb_block;
 

@@ -185,8 +185,7 @@ static enum cb_status find_lost(struct cb_block *block) {
   if (!x) return cb_fail_memory("the check of the state");
   for (size_t j = 0; j < block->job_count; j++) {
     struct cb_job *job = &block->jobs[j];
-    job->variant->arithmetic->to_double(nodes, job->x, x);
-    for (size_t i = 0; i < 3 * nodes && !job->lost; i++) job->lost = !isfinite(x[i]);
+    job->lost = job->lost || !cb_job_finite(job, job->x, x);
   }
   free(x);
   return CB_OK;

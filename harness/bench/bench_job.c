@@ -1,6 +1,7 @@
 /* A variant on the scene, ready to step.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,4 +80,12 @@ void cb_job_steps(void *job, size_t repeats) {
     const enum cb_ending why = cb_stepper_ended(j->stepper).why;
     j->lost |= why == CB_ENDED_INDEFINITE || why == CB_ENDED_OVERFLOW;
   }
+}
+
+bool cb_job_finite(const struct cb_job *job, const void *vector, double *work) {
+  const size_t nodes = cb_operator_nodes(job->op);
+  job->variant->arithmetic->to_double(nodes, vector, work);
+  for (size_t i = 0; i < 3 * nodes; i++)
+    if (!isfinite(work[i])) return false;
+  return true;
 }

@@ -9,7 +9,10 @@
   X(flat)                                                                                          \
   X(collapsed)                                                                                     \
   X(turned)                                                                                        \
-  X(near)
+  X(near)                                                                                          \
+  X(contrast)                                                                                      \
+  X(breakdown)                                                                                     \
+  X(steps)
 
 #define DECLARE(name) extern const struct cb_sweep cb_sweep_##name;
 #define LIST(name) &cb_sweep_##name,
