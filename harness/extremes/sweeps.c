@@ -9,7 +9,13 @@
   X(flat)                                                                                          \
   X(collapsed)                                                                                     \
   X(turned)                                                                                        \
-  X(near)
+  X(near)                                                                                          \
+  X(inversion)                                                                                     \
+  X(jumps)                                                                                         \
+  X(sliver)                                                                                        \
+  X(aspect)                                                                                        \
+  X(offset)                                                                                        \
+  X(units)
 
 #define DECLARE(name) extern const struct cb_sweep cb_sweep_##name;
 #define LIST(name) &cb_sweep_##name,
