@@ -46,7 +46,8 @@ struct sweep {
   const char *name;
   const struct cb_cases *cases;
   size_t same;
-  void (*row_name)(size_t n, struct cb_extreme *row);
+  cb_row_name_fn *row_name;
+  const void *context;
   struct cb_extremes *all;
   struct cb_extreme *row; /* [cases] */
   size_t done;
@@ -64,7 +65,7 @@ static enum cb_status add_rows(struct sweep *s, const struct cb_variant *v,
   for (size_t n = 0; !status && n < s->cases->count; n += s->same) {
     struct cb_extreme folded = s->row[n];
     for (size_t i = 1; i < s->same; i++) cb_extreme_fold(&folded, &s->row[n + i]);
-    s->row_name(n / s->same, &folded);
+    s->row_name(s->context, n / s->same, &folded);
     status = cb_extremes_add(s->all, &folded);
   }
   return status;
@@ -87,12 +88,12 @@ static enum cb_status add_kind(struct sweep *s, const struct cb_variant *const *
 }
 
 enum cb_status cb_cases_sweep(const char *sweep, const struct cb_cases *cases, size_t same,
-                              void (*name)(size_t n, struct cb_extreme *row),
-                              struct cb_extremes *all) {
+                              cb_row_name_fn *name, const void *context, struct cb_extremes *all) {
   struct sweep s = {.name = sweep,
                     .cases = cases,
                     .same = same,
                     .row_name = name,
+                    .context = context,
                     .all = all,
                     .row = malloc(cases->count * sizeof *s.row)};
   enum cb_status status = s.row ? CB_OK : cb_fail_memory("the rows of a sweep");

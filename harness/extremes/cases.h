@@ -27,6 +27,12 @@ void cb_cases_free(struct cb_cases *c);
 /* A variant on them, cold. CB_MEMORY, recorded. Close with cb_probe_close. */
 enum cb_status cb_cases_open(const struct cb_variant *v, const struct cb_cases *c,
                              struct cb_probe *probe);
+/* R[9*count] := its model's frames of F. Only of a model that has one. CB_MEMORY. */
+enum cb_status cb_cases_frames(const struct cb_variant *v, const struct cb_cases *c, double *R);
+
+/* Roundoff times the condition of a frame: above, a thousand roundings turn it by as much as
+ * it can be wrong. */
+extern const double cb_well_conditioned;
 
 /* What is known of one case in numbers of so many bytes. */
 struct cb_known {
@@ -56,10 +62,11 @@ void cb_reference_free(struct cb_reference *r);
 enum cb_status cb_cases_measure(const struct cb_variant *v, const struct cb_reference *r,
                                 struct cb_extreme *row);
 
+/* row->parameter, value (and note) := those of row n of a sweep. */
+typedef void cb_row_name_fn(const void *context, size_t n, struct cb_extreme *row);
 /* Rows of all variants; each `same` cases after each other share one, which says the worst
- * of them. name(n, row): parameter and value of row n. CB_MEMORY, CB_INTERRUPTED. */
+ * of them. CB_MEMORY, CB_INTERRUPTED. */
 enum cb_status cb_cases_sweep(const char *sweep, const struct cb_cases *cases, size_t same,
-                              void (*name)(size_t n, struct cb_extreme *row),
-                              struct cb_extremes *all);
+                              cb_row_name_fn *name, const void *context, struct cb_extremes *all);
 
 #endif

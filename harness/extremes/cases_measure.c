@@ -41,7 +41,7 @@ static double distance(size_t n, const double *a, const double *b) {
 
 /* ---- running it -------------------------------------------------------------------- */
 
-static enum cb_status run_frames(const struct cb_variant *v, const struct cb_cases *c, double *R) {
+enum cb_status cb_cases_frames(const struct cb_variant *v, const struct cb_cases *c, double *R) {
   const size_t bytes = v->arithmetic->scalar_bytes, numbers = 9 * c->count;
   void *vectors = calloc(2 * numbers, bytes);
   if (!vectors) return cb_fail_memory("the frames of a sweep");
@@ -216,7 +216,7 @@ enum cb_status cb_cases_measure(const struct cb_variant *v, const struct cb_refe
   if (!o.f) return cb_fail_memory("what a variant makes of a sweep");
   o.turned = o.f + 12 * count, o.y = o.turned + 12 * count, o.K = o.y + 12 * count;
   if (c->unit && v->model->frame) o.R = o.K + 144 * count;
-  enum cb_status status = o.R ? run_frames(v, c, o.R) : CB_OK;
+  enum cb_status status = o.R ? cb_cases_frames(v, c, o.R) : CB_OK;
   if (!status) status = run_operator(v, r, &o);
   for (size_t n = 0; !status && n < count; n++) {
     const struct judge j = {v,

@@ -18,8 +18,7 @@
 enum { TRIALS = 2 };
 /* Positions in double have to tell the moved ones apart from the others. */
 static const double moved_by = 8;
-/* Above, a thousand roundings may turn a frame by as much as it can be wrong. */
-static const double well_conditioned = 1e-3;
+const double cb_well_conditioned = 1e-3;
 
 static double norm(size_t n, const double *a) {
   double sum = 0;
@@ -55,7 +54,7 @@ static void know_shape(const struct cb_variant *v, struct cb_reference *r, size_
   double F[9];
   for (int i = 0; i < 9; i++) F[i] = x[3 + i % 3 * 3 + i / 3];
   cb_frame_exact(definition, F, k->R, &k->condition);
-  k->framed = k->condition * r->roundoff < well_conditioned;
+  k->framed = k->condition * r->roundoff < cb_well_conditioned;
   k->jumps = !k->framed;
 }
 

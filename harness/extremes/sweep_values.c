@@ -90,10 +90,11 @@ static void of_values(gsl_rng *rng, const double *s, size_t variation, double *F
     NAME##_values(n, s);                                                                           \
     of_values(rng, s, variation, F);                                                               \
   }                                                                                                \
-  static void NAME##_name(size_t n, struct cb_extreme *row) {                                      \
+  static void NAME##_name(const void *context, size_t n, struct cb_extreme *row) {                 \
     double s[3];                                                                                   \
+    (void)context;                                                                                 \
     row->value = NAME##_values(n, s);                                                              \
-    snprintf(row->parameter, sizeof row->parameter, "singular values %g %g %g", s[0], s[1], s[2]); \
+    snprintf(row->parameter, sizeof row->parameter, "values %g %g %g", s[0], s[1], s[2]);          \
   }
 OF_VALUES(regular)
 OF_VALUES(inverted)
@@ -124,7 +125,8 @@ static void turned_fill(gsl_rng *rng, size_t n, size_t variation, double *F) {
   F[4 * x] = 1, F[4 * y] = F[4 * z] = c, F[3 * y + z] = -s, F[3 * z + y] = s;
 }
 
-static void turned_name(size_t n, struct cb_extreme *row) {
+static void turned_name(const void *context, size_t n, struct cb_extreme *row) {
+  (void)context;
   row->value = degrees(n);
   if (n < RIGHT_ANGLES)
     snprintf(row->parameter, sizeof row->parameter, "turned by %g degrees", row->value);
@@ -147,7 +149,8 @@ static void near_fill(gsl_rng *rng, size_t n, size_t variation, double *F) {
   }
 }
 
-static void near_name(size_t n, struct cb_extreme *row) {
+static void near_name(const void *context, size_t n, struct cb_extreme *row) {
+  (void)context;
   row->value = nearness(n);
   snprintf(row->parameter, sizeof row->parameter, "identity + %g", row->value);
 }
@@ -156,7 +159,7 @@ static void near_name(size_t n, struct cb_extreme *row) {
 
 static enum cb_status run(const char *sweep, size_t rows,
                           void (*fill)(gsl_rng *rng, size_t n, size_t variation, double *F),
-                          void (*name)(size_t n, struct cb_extreme *row), struct cb_extremes *all) {
+                          cb_row_name_fn *name, struct cb_extremes *all) {
   struct cb_cases c;
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
   enum cb_status status =
@@ -168,7 +171,7 @@ static enum cb_status run(const char *sweep, size_t rows,
       fill(rng, n / SAME, n % SAME, F);
       for (int i = 0; i < 9; i++) c.x[12 * n + 3 + (size_t)(i % 3 * 3 + i / 3)] = F[i];
     }
-    status = cb_cases_sweep(sweep, &c, SAME, name, all);
+    status = cb_cases_sweep(sweep, &c, SAME, name, NULL, all);
     cb_cases_free(&c);
   }
   if (rng) gsl_rng_free(rng);

@@ -10,9 +10,17 @@
   X(collapsed)                                                                                     \
   X(turned)                                                                                        \
   X(near)                                                                                          \
+  X(inversion)                                                                                     \
+  X(jumps)                                                                                         \
+  X(sliver)                                                                                        \
+  X(aspect)                                                                                        \
+  X(offset)                                                                                        \
+  X(units)                                                                                         \
+  X(materials)                                                                                     \
   X(contrast)                                                                                      \
+  X(steps)                                                                                         \
   X(breakdown)                                                                                     \
-  X(steps)
+  X(inputs)
 
 #define DECLARE(name) extern const struct cb_sweep cb_sweep_##name;
 #define LIST(name) &cb_sweep_##name,
