@@ -89,6 +89,8 @@ static enum cb_status step(const struct system *system, const struct cb_bench_sc
       cb_job_finite(&job, cb_stepper_dv(job.stepper), work) && cb_job_finite(&job, job.v, work);
   snprintf(row->note, sizeof row->note, "%s after %zu of %d", ending[ended.why], ended.iterations,
            ITERATIONS);
+  if (system->make == held && memcmp(job.x, job.start_x, job.vector_bytes) != 0)
+    row->law = "fixed nodes stay";
   if (system->definite && ended.why == CB_ENDED_INDEFINITE &&
       row->variant->model->laws[0] & CB_KEEPS(CB_LAW_SEMIDEFINITE))
     row->law = cb_law_name[CB_LAW_SEMIDEFINITE];
