@@ -15,7 +15,7 @@
  * decades are tried from below, the first bad one is halved. */
 enum { STEPS = 300, LOOKS = 30, DECADES = 8, HALVINGS = 5 };
 static const double SHORTEST = 1e-7, TWICE = 2;
-/* A hundredth of the period of the swing. */
+/* A thirtieth of the longest that symplectic Euler stands. */
 enum { MILLION = 1000000, DRIFT_LOOKS = 100 };
 static const double DRIFT_STEP = 1e-4;
 
