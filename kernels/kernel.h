@@ -250,13 +250,14 @@ void cb_stepper_advance(struct cb_stepper *s, void *x, void *v);
 /* Why conjugate gradients stopped, and after how many steps. Whatever the operator and
  * the right-hand side, dv is finite, and the quadratic form 1/2 dv.A dv - b.dv, which each
  * step lessens, is not above its value for dv = 0. Nodes without mass and stiffness that
- * carry a load make A singular: that is not detected unless p.A p shows it. */
+ * carry a load are found at the latest when all else is solved; their dv means nothing. */
 enum cb_ending {
   CB_ENDED_ITERATIONS, /* all that were asked for */
   CB_ENDED_SOLVED,     /* the residual is zero to rounding; the other iterations run, for equal
                           times, and change nothing */
-  CB_ENDED_INDEFINITE, /* p.A p <= 0: A is not positive definite. dv is what was there before;
-                          in the first iteration b times b.b / max(|b.A b|, b.M b) */
+  CB_ENDED_INDEFINITE, /* p.A p <= 0, or nothing beside an earlier one: A is not positive
+                          definite to rounding. dv is what was there before; in the first
+                          iteration b times b.b / max(|b.A b|, b.M b) */
   CB_ENDED_OVERFLOW    /* b, p.A p or dv would not be finite: dv is what was there before, or 0 */
 };
 struct cb_ended {

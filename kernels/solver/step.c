@@ -174,7 +174,16 @@ static ACC inertia(const struct cb_stepper *s, size_t thread, struct share own) 
  * overflow is known before it is written. In double, which `counted` does not count. */
 struct bounds {
   double p, dv;
+  double steepest; /* the largest p . A p / |p|^2 met */
 };
+
+/* Lost in rounding beside the steepest direction, twice over: on a positive definite A whose
+ * condition is anything like what the arithmetic can solve this is never so. */
+static bool lacks_curvature(struct bounds *b, double roundoff, double py) {
+  const double slope = py / b->p / b->p;
+  b->steepest = fmax(b->steepest, slope);
+  return py <= 0 || slope <= 256 * roundoff * roundoff * b->steepest;
+}
 
 static bool within(const struct bounds *b, double step) {
   const double most = (sizeof(S) == sizeof(float) ? FLT_MAX : DBL_MAX) / 2;
@@ -200,7 +209,7 @@ static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct
   struct cb_team *team = cb_operator_team(s->op);
   const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
   ACC rr = start(s, thread, own), enough = rr * (ACC)(roundoff * roundoff);
-  struct bounds bound = {sqrt((double)rr), 0};
+  struct bounds bound = {sqrt((double)rr), 0, 0};
   struct cb_ended ended = {CB_ENDED_ITERATIONS, 0};
   for (size_t k = 0; k < s->parameters.iterations; k++) {
     if (!isfinite((double)rr)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
@@ -210,13 +219,13 @@ static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct
     const ACC py = curvature(s, thread, own);
     if (!(rr > enough)) ended.why = CB_ENDED_SOLVED;
     const bool solved = ended.why == CB_ENDED_SOLVED;
-    if (!solved && py <= 0) {
+    if (!isfinite((double)py)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
+    if (!solved && lacks_curvature(&bound, roundoff, (double)py)) {
       const bool first = k == 0 && descend_without_curvature(s, thread, own, &bound, rr, py);
       return (struct cb_ended){CB_ENDED_INDEFINITE, first ? 1 : k};
     }
     const ACC alpha = solved ? 0 : rr / py;
-    if (!isfinite((double)py) || !within(&bound, (double)alpha))
-      return (struct cb_ended){CB_ENDED_OVERFLOW, k};
+    if (!within(&bound, (double)alpha)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
     bound.dv += (double)alpha * bound.p;
     const ACC next = descend(s, thread, own, splat((S)alpha));
     ended.iterations += !solved;
