@@ -20,8 +20,8 @@
  * and f = -(stress/mu) w_j sqrt(mu W / c). For an orthotropic material mu is
  * its G_xy and the bracket is D : sym(H) / mu. */
 enum cb_policy {
-  POLICY_PRECOMPUTED,   /* w_j = R grad0_j: rest gradients, turned */
-  POLICY_UPDATED,       /* w_j = cofactors of the current edges / (6 V0) */
+  POLICY_PRECOMPUTED,    /* w_j = R grad0_j: rest gradients, turned */
+  POLICY_UPDATED,        /* w_j = cofactors of the current edges / (6 V0) */
   POLICY_UPDATED_VOLUME, /* w_j = cofactors of the current edges / (6 V) */
   POLICY_LAZY            /* updated in the frame's axes when the stretch has moved, else kept
                             there; stored as POLICY_UPDATED is */
