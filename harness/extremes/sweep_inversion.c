@@ -30,7 +30,7 @@ static enum cb_status run_shapes(struct cb_extremes *all) {
   for (size_t n = 0; n < c.count; n++) {
     double F[9];
     /* the centre is passed by: that point is one of the collapsed shapes */
-    const double beside = n / STOPS == CB_PATHS - 1 ? 0.5 : 0;
+    const double beside = n / STOPS == CB_PATH_CENTRE ? 0.5 : 0;
     cb_path_gradient(n / STOPS, ((double)(n % STOPS) + beside) / (STOPS - 1), F);
     for (int i = 0; i < 9; i++) c.x[12 * n + 3 + (size_t)(i % 3 * 3 + i / 3)] = F[i];
   }
@@ -97,7 +97,7 @@ static bool finite_way(const struct cb_walk *w, size_t path, bool over_volume) {
     const size_t n = cb_walk_index(path, k);
     const bool flat = 3 * k == CB_PATH_STEPS;
     double sum = 0;
-    if (flat && path == CB_PATHS - 1) continue;
+    if (flat && path == CB_PATH_CENTRE) continue;
     for (size_t i = 0; i < 9; i++) sum += w->R[9 * n + i];
     for (size_t i = 0; i < 12 && !(over_volume && flat); i++) sum += w->f[12 * n + i];
     if (!isfinite(sum)) return false;
