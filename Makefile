@@ -84,6 +84,10 @@ truth: all ## hold the models against closed forms and conservation; fails when 
 	@$(BUILD)/corobench truth --output results/latest
 	@plots/draw.sh results/latest
 
+extremes: all ## what breaks, and where, for each model; fails while something does
+	@$(BUILD)/corobench extremes --output results/latest; status=$$?; \
+	  [ $$status -gt 1 ] || plots/draw.sh results/latest || status=2; exit $$status
+
 SCENE = scenes/block.json
 trade: all ## error against time of every setting on a scene (SCENE=FILE), drawn
 	@$(BUILD)/corobench trade $(SCENE) --output results/latest
@@ -125,7 +129,7 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench truth trade plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races verify bench truth extremes trade plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -138,6 +142,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench truth trade plots help clean always
+.PHONY: all programs setup test sanitize races verify bench truth extremes trade plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

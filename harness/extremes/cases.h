@@ -38,8 +38,8 @@ extern const double cb_well_conditioned;
 struct cb_known {
   bool framed; /* R is known and well-conditioned in that arithmetic */
   bool jumps;  /* R is defined by the model, but not here or not well: finite is enough */
-  bool flat;   /* its volume is now 0 */
-  bool lost;   /* its volume at rest is 0: rounded away */
+  bool flat;   /* of no volume now, or of one that is lost in rounding */
+  bool lost;   /* of no volume at rest: rounded away */
   double R[9], condition;
   double f[12], f_unit; /* N; NaN: not known */
   double y[12], y_unit; /* K u, N/m of u */
@@ -56,6 +56,9 @@ struct cb_reference {
 enum cb_status cb_reference_create(const struct cb_variant *v, const struct cb_cases *cases,
                                    unsigned long seed, struct cb_reference *r);
 void cb_reference_free(struct cb_reference *r);
+
+/* Does it divide B by the current volume? Then a flat element has no force by the method. */
+bool cb_divides_by_volume(const struct cb_model *model);
 
 /* row[count]: finite, figures, law and note of each case; the rest of the row stays.
  * CB_MEMORY, recorded. */

@@ -115,18 +115,20 @@ static void claims(const struct judge *j, enum cb_law law, double value, double 
   if (j->v->model->laws[0] & CB_KEEPS(law)) breaks(j, cb_law_name[law], value, unit, scale);
 }
 
+bool cb_divides_by_volume(const struct cb_model *model) {
+  return strstr(model->name, "-updated-volume") != NULL;
+}
+
 /* Where the answer is finite but its exact value is no number of this arithmetic, or has
  * no value by the method itself, nothing can be judged. */
 static void judge_finite(const struct judge *j) {
   const struct cb_known *k = j->k;
   struct cb_extreme *row = j->row;
-  const char *tail = strrchr(j->v->model->name, '-');
-  const bool over_volume = tail && strcmp(tail, "-volume") == 0;
   const bool f = all_finite(12, j->f), y = all_finite(12, j->y) && all_finite(144, j->K);
   row->finite = (!j->R || all_finite(9, j->R)) && f && y;
   if (row->finite || (j->R && !all_finite(9, j->R))) return;
-  if (k->flat && over_volume)
-    snprintf(row->note, sizeof row->note, "by method: B is divided by a volume of 0");
+  if (k->flat && cb_divides_by_volume(j->v->model))
+    snprintf(row->note, sizeof row->note, "by method: B is divided by a volume of about 0");
   else if ((!f && norm(12, k->f) > j->r->most) || (f && !y && norm(12, k->y) > j->r->most))
     snprintf(row->note, sizeof row->note, "not judged: the exact %s is no number of %s",
              f ? "product" : "force", j->v->arithmetic->name);
@@ -203,7 +205,7 @@ static enum cb_status judge_case(const struct judge *j) {
   judge_finite(j);
   if (!j->row->finite) return CB_OK;
   judge_frame(j);
-  if (k->jumps) return CB_OK;
+  if (k->jumps || (k->flat && cb_divides_by_volume(j->v->model))) return CB_OK;
   if (isfinite(k->f_unit)) judge_force(j);
   return isfinite(k->y_unit) ? judge_operator(j) : CB_OK;
 }

@@ -35,21 +35,29 @@ static double longest(const double *x) {
   return size;
 }
 
-/* In quad: exact for double edges but for the last roundings. */
-static bool without_volume(const double *x) {
-  __float128 e[9];
-  for (int i = 0; i < 9; i++) e[i] = (__float128)x[3 + i] - x[i % 3];
-  return e[0] * (e[4] * e[8] - e[5] * e[7]) + e[1] * (e[5] * e[6] - e[3] * e[8]) +
-             e[2] * (e[3] * e[7] - e[4] * e[6]) ==
-         0;
+typedef __float128 quad;
+
+/* |edges| |cofactors| / |volume|, in quad: what a rounding of the edges is for the volume;
+ * infinite where that is 0. */
+static double volume_condition(const double *x) {
+  quad e[9], cofactor, volume = 0;
+  double edges[9], cofactors[9];
+  for (int i = 0; i < 9; i++) edges[i] = (double)(e[i] = (quad)x[3 + i] - x[i % 3]);
+  for (int i = 0; i < 9; i++) {
+    const int a = (i / 3 + 1) % 3 * 3, b = (i / 3 + 2) % 3 * 3, c = (i + 1) % 3, d = (i + 2) % 3;
+    cofactor = e[a + c] * e[b + d] - e[a + d] * e[b + c];
+    cofactors[i] = (double)cofactor;
+    if (i < 3) volume += e[i] * cofactor;
+  }
+  return volume == 0 ? HUGE_VAL : norm(9, edges) * norm(9, cofactors) / fabs((double)volume);
 }
 
 static void know_shape(const struct cb_variant *v, struct cb_reference *r, size_t n) {
   struct cb_known *k = &r->known[n];
   const double *x = r->cases.x + 12 * n;
   const enum cb_definition definition = cb_frame_definition(v->model);
-  k->flat = without_volume(x);
-  k->lost = without_volume(r->cases.X + 12 * n);
+  k->flat = !(volume_condition(x) * r->roundoff < cb_well_conditioned);
+  k->lost = isinf(volume_condition(r->cases.X + 12 * n));
   if (!r->cases.unit || definition == CB_UNDEFINED) return;
   double F[9];
   for (int i = 0; i < 9; i++) F[i] = x[3 + i % 3 * 3 + i / 3];

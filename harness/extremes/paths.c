@@ -12,15 +12,16 @@
 
 enum { POINTS = CB_PATHS * (CB_PATH_STEPS + 1) };
 
-const char *const cb_path_name[CB_PATHS] = {"vertex a", "vertex b", "vertex c", "vertex d",
-                                            "edge ab",  "edge ac",  "edge ad",  "centre"};
+const char *const cb_path_name[CB_PATHS] = {"vertex a", "vertex b", "vertex c",
+                                            "vertex d", "edge ab",  "edge ac",
+                                            "edge ad",  "centre",   "vertex d straight"};
 
 /* Where the moving vertices, shares of all four, come from and go to. Not the middles: there
  * singular values are the same. */
 static const struct {
   bool moves[4];
   double from[4], to[4];
-} motion[CB_PATHS - 1] = {
+} motion[CB_PATH_CENTRE] = {
     {{1, 0, 0, 0}, {1, 0, 0, 0}, {0, 0.5, 0.3, 0.2}},
     {{0, 1, 0, 0}, {0, 1, 0, 0}, {0.5, 0, 0.3, 0.2}},
     {{0, 0, 1, 0}, {0, 0, 1, 0}, {0.5, 0.3, 0, 0.2}},
@@ -32,15 +33,17 @@ static const struct {
 
 void cb_path_gradient(size_t path, double t, double F[9]) {
   static const double strain[9] = {0.3, 0.1, -0.05, 0, -0.2, 0.15, 0.1, 0, 0.1};
-  const double along = 3 * t;
+  const double along = 3 * t, straight[3] = {1.2, 0.9, 1 - along};
   for (int i = 0; i < 9; i++) {
-    if (path == CB_PATHS - 1) {
-      F[i] = (1 - along) * ((i % 4 == 0) + t * strain[i]);
-      continue;
-    }
+    const double unit = i % 4 == 0;
     const int row = i / 3, vertex = 1 + i % 3; /* rest: vertex n is unit vector n */
-    const double shift = motion[path].to[1 + row] - motion[path].from[1 + row];
-    F[i] = (i % 4 == 0) + along * shift * (motion[path].moves[vertex] - motion[path].moves[0]);
+    if (path == CB_PATH_CENTRE)
+      F[i] = (1 - along) * (unit + t * strain[i]);
+    else if (path > CB_PATH_CENTRE)
+      F[i] = unit * straight[row];
+    else
+      F[i] = unit + along * (motion[path].to[1 + row] - motion[path].from[1 + row]) *
+                        (motion[path].moves[vertex] - motion[path].moves[0]);
   }
 }
 

@@ -51,10 +51,7 @@ enum cb_status cb_paths_table(const struct cb_extremes *all, struct cb_table **t
                                        "qr-exact",
                                        "svd-updated",
                                        "polar-closed-precomputed",
-                                       "polar-exact",
-                                       "polar-tangent",
                                        "polar-quaternion-updated",
-                                       "polar-edges-updated",
                                        "polar-reflected-updated"};
   struct cb_table *t = cb_table_create("path,t,model,frame_turned_deg,frame_step_deg,exact_step_"
                                        "deg,force_per_EL2,force_step_per_EL2");

@@ -29,7 +29,9 @@ static enum cb_status run_shapes(struct cb_extremes *all) {
   if (status) return status;
   for (size_t n = 0; n < c.count; n++) {
     double F[9];
-    cb_path_gradient(n / STOPS, (double)(n % STOPS) / (STOPS - 1), F);
+    /* the centre is passed by: that point is one of the collapsed shapes */
+    const double beside = n / STOPS == CB_PATH_CENTRE ? 0.5 : 0;
+    cb_path_gradient(n / STOPS, ((double)(n % STOPS) + beside) / (STOPS - 1), F);
     for (int i = 0; i < 9; i++) c.x[12 * n + 3 + (size_t)(i % 3 * 3 + i / 3)] = F[i];
   }
   status = cb_cases_sweep("inversion", &c, STOPS, name, NULL, all);
@@ -88,14 +90,16 @@ static struct jumps find_jumps(const struct cb_walk *w, size_t path, bool judge_
   return j;
 }
 
-/* Finite all the way but where the volume that B is divided by is 0. */
+/* Finite all the way, but for where shapes alone are judged: collapsed to a point, flat
+ * where B is divided by the volume. */
 static bool finite_way(const struct cb_walk *w, size_t path, bool over_volume) {
   for (size_t k = 0; k <= CB_PATH_STEPS; k++) {
     const size_t n = cb_walk_index(path, k);
+    const bool flat = 3 * k == CB_PATH_STEPS;
     double sum = 0;
+    if (flat && path == CB_PATH_CENTRE) continue;
     for (size_t i = 0; i < 9; i++) sum += w->R[9 * n + i];
-    for (size_t i = 0; i < 12 && !(over_volume && 3 * k == CB_PATH_STEPS); i++)
-      sum += w->f[12 * n + i];
+    for (size_t i = 0; i < 12 && !(over_volume && flat); i++) sum += w->f[12 * n + i];
     if (!isfinite(sum)) return false;
   }
   return true;
@@ -111,7 +115,7 @@ static enum cb_status add_variant(struct cb_extremes *all, const struct cb_varia
     struct cb_extreme row = cb_extreme_blank("jumps", v);
     const struct jumps j = find_jumps(&w, p, !warm);
     name(NULL, p, &row);
-    row.finite = finite_way(&w, p, strstr(model, "-updated-volume") != NULL);
+    row.finite = finite_way(&w, p, cb_divides_by_volume(v->model));
     row.law = isnan(j.unexplained_at) ? "" : "continuity";
     row.value = isnan(j.unexplained_at) ? j.frame_at : j.unexplained_at;
     if (j.frame > frame_jump || j.force > 0)

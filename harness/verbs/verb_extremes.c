@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "harness/error.h"
+#include "harness/extremes/paths.h"
 #include "harness/extremes/report.h"
 #include "harness/files/output.h"
 #include "harness/measure/environment.h"
@@ -14,8 +15,10 @@ static const char doc[] =
     "Drive each model to the extremes and say where it is finite, right and keeps the laws that it "
     "claims, against quad precision. Without --variant: every model by ebe in f64 and f32, scalar "
     "and in the widest lanes of this processor. Exit status 1 when a row is not finite or breaks a "
-    "law. With --output, write extremes.csv and extremes.json (all rows) and extremes-map.csv (the "
-    "worst of each model, arithmetic and sweep, and where it was met first)."
+    "law. With --output, write extremes.csv and extremes.json (all rows) extremes-map.csv (the "
+    "worst "
+    "of each model, arithmetic and sweep, and where it was met first) and extremes-paths.csv "
+    "(frames and forces of elements that are turned inside out)."
     "\vAn error is in roundings of the arithmetic times the condition of the exact answer; above "
     "1000 it is inaccurate. Not judged: the exact answer is no number of the arithmetic, or the "
     "method has none there.";
@@ -49,15 +52,18 @@ static bool asked(const struct cb_options *o, const struct cb_variant *v) {
 }
 
 static enum cb_status write_files(const struct cb_extremes *all, const char *directory) {
-  struct cb_table *rows = cb_extremes_rows(all), *map = cb_extremes_map(all);
+  struct cb_table *rows = cb_extremes_rows(all), *map = cb_extremes_map(all), *paths = NULL;
   enum cb_status status = rows && map ? CB_OK : cb_fail_memory("the tables of the extremes");
+  if (!status) status = cb_paths_table(all, &paths);
   if (!status) status = cb_output_directory(directory);
   if (!status) status = cb_output_table(directory, "extremes.csv", rows, CB_CSV);
   if (!status) status = cb_output_table(directory, "extremes.json", rows, CB_JSON);
   if (!status) status = cb_output_table(directory, "extremes-map.csv", map, CB_CSV);
+  if (!status) status = cb_output_table(directory, "extremes-paths.csv", paths, CB_CSV);
   if (!status) status = cb_environment_footer(directory, "extremes-footer.txt");
   cb_table_free(rows);
   cb_table_free(map);
+  cb_table_free(paths);
   return status;
 }
 
