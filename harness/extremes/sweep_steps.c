@@ -22,21 +22,22 @@ static const double DRIFT_STEP = 1e-4;
 static bool stable(const struct cb_swing *s) { return s->finite && s->most < TWICE; }
 
 struct limit {
-  double h, most;       /* the largest stable step (0: none), the most energy there */
-  struct cb_swing last; /* of one second */
+  double h;              /* the largest stable step; 0: none */
+  struct cb_swing there; /* with it */
+  struct cb_swing last;  /* with one second */
 };
 
 static enum cb_status find_limit(const struct cb_variant *v, const struct cb_bench_scene *scene,
                                  enum cb_integrator integrator, struct limit *l) {
   struct cb_swing s;
   double good = 0, bad = 0;
+  *l = (struct limit){.there = {false, NAN, NAN, NAN, NAN}};
   enum cb_status status = cb_swing(v, scene, integrator, 1, STEPS, LOOKS, &l->last);
-  l->most = NAN;
   for (int n = 0; !status && !(bad > 0) && n < DECADES; n++) {
     const double h = SHORTEST * pow(10, n);
     status = cb_swing(v, scene, integrator, h, STEPS, LOOKS, &s);
     if (stable(&s))
-      good = h, l->most = s.most;
+      good = h, l->there = s;
     else
       bad = h;
   }
@@ -44,7 +45,7 @@ static enum cb_status find_limit(const struct cb_variant *v, const struct cb_ben
     const double h = sqrt(good * bad);
     status = cb_swing(v, scene, integrator, h, STEPS, LOOKS, &s);
     if (stable(&s))
-      good = h, l->most = s.most;
+      good = h, l->there = s;
     else
       bad = h;
   }
@@ -52,11 +53,30 @@ static enum cb_status find_limit(const struct cb_variant *v, const struct cb_ben
   return status;
 }
 
-static void growth(double most, const char *where, char *note, size_t room) {
-  if (isnan(most))
-    snprintf(note, room, "not finite %s", where);
-  else
-    snprintf(note, room, "energy up to %.3g of the start's %s", most, where);
+/* The same in columns. */
+static enum cb_status add_columns(const struct cb_variant *v, enum cb_integrator integrator,
+                                  const char *what, double h, size_t steps,
+                                  const struct cb_swing *s, struct cb_extremes *all) {
+  char name[96];
+  const double figures[] = {s->most, s->energy, s->momentum, s->angular};
+  if (!all->steps)
+    all->steps = cb_table_create("variant,integrator,what,step_s,steps,finite,most_energy,"
+                                 "end_energy,momentum_change,angular_change");
+  if (!all->steps) return cb_fail_memory("the table of steps");
+  cb_variant_name(v, name);
+  cb_table_text(all->steps, name);
+  cb_table_text(all->steps, cb_integrator_name[integrator]);
+  cb_table_text(all->steps, what);
+  cb_table_number(all->steps, h);
+  cb_table_integer(all->steps, (long long)steps);
+  cb_table_text(all->steps, s->finite ? "yes" : "no");
+  for (int i = 0; i < 4; i++) {
+    if (isnan(figures[i]))
+      cb_table_missing(all->steps);
+    else
+      cb_table_number(all->steps, figures[i]);
+  }
+  return CB_OK;
 }
 
 /* A step that is too long is no fault of a variant: nothing is broken by a row. */
@@ -70,8 +90,13 @@ static enum cb_status add_limit(const struct cb_variant *v, const struct cb_benc
   row.finite = l.h > 0;
   snprintf(row.parameter, sizeof row.parameter, "%s: largest stable step, s",
            cb_integrator_name[integrator]);
-  growth(l.last.most, "at 1 s", row.note, sizeof row.note);
-  return cb_extremes_add(all, &row);
+  if (l.last.finite)
+    snprintf(row.note, sizeof row.note, "at 1 s energy up to %.3g of the start's", l.last.most);
+  else
+    snprintf(row.note, sizeof row.note, "at 1 s not finite");
+  status = add_columns(v, integrator, "largest stable", l.h, STEPS, &l.there, all);
+  if (!status) status = add_columns(v, integrator, "one second", 1, STEPS, &l.last, all);
+  return status ? status : cb_extremes_add(all, &row);
 }
 
 static enum cb_status add_drift(const struct cb_variant *v, const struct cb_bench_scene *scene,
@@ -86,7 +111,8 @@ static enum cb_status add_drift(const struct cb_variant *v, const struct cb_benc
            cb_integrator_name[integrator]);
   snprintf(row.note, sizeof row.note, "energy x %.4g, most %.4g; momentum %.1e, angular %.1e",
            s.energy, s.most, s.momentum, s.angular);
-  return cb_extremes_add(all, &row);
+  status = add_columns(v, integrator, "million", DRIFT_STEP, MILLION, &s, all);
+  return status ? status : cb_extremes_add(all, &row);
 }
 
 /* Of those that have the same formulas in more lanes one is enough. */
