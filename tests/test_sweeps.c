@@ -108,15 +108,15 @@ static void the_largest_explicit_step_is_that_of_theory(void **state) {
   assert_int_equal(cb_swing_body(2005, &body), CB_OK);
   const double h = longest_step(v, &body);
   assert_int_equal(cb_swing(v, &body, CB_EXPLICIT, 0.9 * h, 1000, 100, &s), CB_OK);
-  assert_true(s.finite && s.most < 2);
+  assert_true(s.finite && s.most < 10);
   assert_int_equal(cb_swing(v, &body, CB_EXPLICIT, 1.02 * h, 1000, 100, &s), CB_OK);
-  assert_false(s.finite && s.most < 2);
+  assert_false(s.finite && s.most < 10);
   cb_bench_scene_free(&body);
   const struct cb_variant *list[] = {v, NULL};
   struct cb_extremes all = swept("steps", list);
   const struct cb_extreme *r = row_of(&all, "symplectic Euler: largest stable step, s", v);
-  /* between a decade and the last of five halvings of its logarithm: 7 percent */
-  assert_true(r->value < 1.02 * h && r->value > 0.9 * h);
+  /* the energy is ten times at 0.95 h, and five halvings of a decade leave 7 percent */
+  assert_true(r->value < 1.02 * h && r->value > 0.95 * h / 1.075);
   assert_true(cb_table_rows(all.steps) == 7);
   cb_extremes_free(&all);
 }
