@@ -119,7 +119,7 @@ static enum cb_status add_variant(struct cb_extremes *all, const struct cb_varia
     row.law = isnan(j.unexplained_at) ? "" : "continuity";
     row.value = isnan(j.unexplained_at) ? j.frame_at : j.unexplained_at;
     if (j.frame > frame_jump || j.force > 0)
-      snprintf(row.note, sizeof row.note, "%sframe by %.0f deg at %.3f, force by %.2g at %.3f",
+      snprintf(row.note, sizeof row.note, "%sframe by %.0f deg at %.3f; force by %.2g at %.3f",
                warm ? "warm: " : "", j.frame, j.frame_at, j.force, j.force_at);
     status = cb_extremes_add(all, &row);
   }

@@ -146,7 +146,7 @@ static enum cb_status add_step(struct cb_extremes *all, const struct cb_variant 
   if (!status) status = step(v, c, s, dv);
   if (status) return status;
   name(s, 0, &row);
-  strncat(row.parameter, ", a step", sizeof row.parameter - strlen(row.parameter) - 1);
+  strncat(row.parameter, " in a step", sizeof row.parameter - strlen(row.parameter) - 1);
   row.finite = isfinite(norm(dv, NULL));
   if (row.finite) row.force_error = norm(dv, exact) / unit;
   return cb_extremes_add(all, &row);
