@@ -20,7 +20,7 @@ panel_h = (height - 60 - 150 - 5 * 50) / 6.0
 do for [kind in "svg png"] {
   eval do_open(kind)
   set output in("extremes-paths." . kind)
-  set multiplot title "Turned inside out: frame and force along the way, flat at 1/3 (dotted). A vertical line and a spike are a jump" font ",15" noenhanced
+  set multiplot title "Turned inside out: frame and force along the way, flat at 1/3 (dotted). A vertical line or a spike is a jump; force: / (E L^2), 150 steps" font ",15" noenhanced
   set label 1 footer at screen 0.01, 0.008 font ",8" textcolor "#606060" noenhanced
   set grid
   set xrange [0:1]
@@ -61,5 +61,5 @@ do for [kind in "svg png"] {
     " (frame: every polar)" : "")
   unset multiplot
   unset output
-  set border linecolor "#404040"; set tics nomirror; set ytics; set xtics
+  set border 31 linecolor "#404040"; set tics nomirror; set ytics; set xtics
 }

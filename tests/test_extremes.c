@@ -243,6 +243,8 @@ static void the_verb_writes_what_it_found(void **state) {
   }
   assert_refused(run_words(NULL, (const char *const[]){"extremes", "--sweep", "valves", NULL}),
                  "there is no sweep 'valves' (nearest: 'values')");
+  assert_refused(run_words(NULL, (const char *const[]){"extremes", "--variant", "*/counted", NULL}),
+                 "--variant selects nothing that can be judged");
 }
 
 /* ---- exact frames ------------------------------------------------------------------ */

@@ -82,7 +82,8 @@ static enum cb_status step(const struct cb_variant *v, const struct cb_cases *c,
   if (!status) status = cb_operator_create(v, &mesh, &m, cb_step_scale(&p), 1, &op);
   if (!status) status = cb_stepper_create(op, &p, mass, fixed, &stepper);
   if (status) {
-    cb_fail_memory("a step of the sweep of units");
+    cb_fail(status, "%s/%s/%s cannot take a step of the sweep of units", v->model->name,
+            cb_storage_name[v->storage], a->name);
   } else {
     a->from_double(mesh.nodes, c->x, x);
     a->from_double(mesh.nodes, none, velocity);
