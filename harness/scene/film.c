@@ -91,11 +91,11 @@ static void write_faces(struct cb_film *film, const double *x) {
     double n[3];
     cross(x, face->node, n);
     for (int j = 0; j < 4; j++) {
-      const double *p = x + 3 * face->node[j % 3];
-      fprintf(f, "%.5g %.5g %.5g %.3f %d\n", p[0], p[1], p[2], shade(n),
-              is_inverted(&film->body->at.mesh, face->tet, x));
+      const double *p = x + 3 * face->node[j < 3 ? j : 2];
+      fprintf(f, "%.5g %.5g %.5g %.3f %d\n%s", p[0], p[1], p[2], shade(n),
+              is_inverted(&film->body->at.mesh, face->tet, x), j % 2 ? "\n" : "");
     }
-    fputc('\n', f);
+    fputs("nan nan nan 0 0\nnan nan nan 0 0\n\n", f);
   }
   fputc('\n', f);
 }
@@ -180,7 +180,7 @@ void cb_film_abandon(struct cb_film *film) {
   *film = (struct cb_film){0};
 }
 
-/* Which picture is the n-th of the strip: half by time, half by the way gone. */
+/* Which picture is the n-th of the strip: a third by time, the rest by the way gone. */
 static size_t of_strip(const struct cb_film *film, size_t n) {
   const struct cb_picture *last = film->picture + film->count - 1;
   const double part = (double)n / (CB_STRIP - 1);
@@ -190,19 +190,38 @@ static size_t of_strip(const struct cb_film *film, size_t n) {
     const struct cb_picture *p = film->picture + i;
     const double time = last->time > 0 ? p->time / last->time : 0;
     const double way = last->way > 0 ? p->way / last->way : time;
-    const double off = fabs((time + way) / 2 - part);
+    const double off = fabs((time + 2 * way) / 3 - part);
     if (off < least) least = off, best = i;
   }
   return best;
 }
 
+/* The picture before something lets go or is raised, in place of the nearest one. */
+static void put_event(const struct cb_film *film, double time, size_t strip[CB_STRIP]) {
+  size_t event = 0, nearest = 1;
+  while (event + 1 < film->count && film->picture[event + 1].time <= time * (1 + 1e-9)) event++;
+  for (size_t n = 1; n + 1 < CB_STRIP; n++) {
+    const double off = fabs(film->picture[strip[n]].time - time);
+    if (off < fabs(film->picture[strip[nearest]].time - time)) nearest = n;
+  }
+  strip[nearest] = event;
+}
+
+static void choose_strip(const struct cb_film *film, size_t strip[CB_STRIP]) {
+  const struct cb_scene *s = film->body->scene;
+  for (size_t n = 0; n < CB_STRIP; n++) strip[n] = of_strip(film, n);
+  if (s->stage_count) put_event(film, s->stage[0].from, strip);
+  for (size_t n = 0; n < s->handle_count; n++)
+    if (s->handle[n].until > 0) put_event(film, s->handle[n].until, strip);
+}
+
 static enum cb_status write_table(const struct cb_film *film) {
   char name[128];
-  bool *strip = calloc(film->count, sizeof *strip);
+  size_t strip[CB_STRIP];
   struct cb_table *t =
       cb_table_create("picture,time_s,inverted,tetrahedra,distance,ground_m,strip");
-  enum cb_status status = strip && t ? CB_OK : cb_fail_memory("the pictures");
-  for (size_t n = 0; !status && n < CB_STRIP; n++) strip[of_strip(film, n)] = true;
+  enum cb_status status = t ? CB_OK : cb_fail_memory("the pictures");
+  choose_strip(film, strip);
   for (size_t i = 0; !status && i < film->count; i++) {
     cb_table_integer(t, (long long)i);
     cb_table_number(t, film->picture[i].time);
@@ -213,12 +232,13 @@ static enum cb_status write_table(const struct cb_film *film) {
       cb_table_number(t, film->body->scene->ground);
     else
       cb_table_missing(t);
-    cb_table_integer(t, strip[i] || film->count <= CB_STRIP);
+    bool in_strip = film->count <= CB_STRIP;
+    for (size_t n = 0; n < CB_STRIP; n++) in_strip |= strip[n] == i;
+    cb_table_integer(t, in_strip);
   }
   snprintf(name, sizeof name, "%s-film.csv", film->body->scene->name);
   if (!status) status = cb_output_table(film->directory, name, t, CB_CSV);
   cb_table_free(t);
-  free(strip);
   return status;
 }
 

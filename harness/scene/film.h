@@ -35,13 +35,16 @@ enum cb_status cb_film_open(const struct cb_body *body, const char *directory, s
 /* One more picture; positions that are not finite make none. A cb_watch.see. */
 enum cb_status cb_film_see(void *film, double t, const double *x);
 /* Write, beside NAME-0000.vtu and the others, of which NAME.pvd is the list,
- *   NAME-faces.txt   boundary faces as blocks "x_m y_m z_m shade inverted" of 4 lines (the first
- *                    node once more), two blank lines after each picture: `index` of gnuplot;
- *                    shade: 0 to 1, by the angle to a light above; inverted: 1 if its element is
+ *   NAME-faces.txt   "x_m y_m z_m shade inverted" of nodes of the boundary's faces, each face as
+ *                    two scans of two (the last node twice) and one that is not a number, as
+ *                    gnuplot's pm3d draws patches; two blank lines after each picture, which is
+ *                    an `index`; shade: 0 to 1, by the angle to a light above, in front and to
+ *                    the left; inverted: 1 if its element is
  *   NAME-grips.txt   "x_m y_m z_m moved" of every selection that is held (0) or moved (1)
  *   NAME-film.csv    picture,time_s,inverted,tetrahedra,distance,ground_m,strip (1: in the
- *                    strip, where as much time and motion is between two as between others)
- * and free the film. CB_IO, CB_MEMORY. */
+ *                    strip: about as much time and motion is between two as between others;
+ *                    and what there is when the first stage begins and handles let go)
+ * and free the film, in any case. The film has a picture. CB_IO, CB_MEMORY. */
 enum cb_status cb_film_close(struct cb_film *film);
 void cb_film_abandon(struct cb_film *film); /* zeroed is allowed */
 

@@ -123,7 +123,7 @@ static void conclude(struct cb_way *w, struct cb_outcome *o, size_t steps) {
 }
 
 static enum cb_status show(struct cb_way *w, const struct cb_watch *watch, size_t step) {
-  if (!watch || step % watch->every) return CB_OK;
+  if (!watch || (step % watch->every && step < w->steps)) return CB_OK;
   w->job.variant->arithmetic->to_double(w->body->at.mesh.nodes, w->job.x, w->x);
   return watch->see(watch->context, (double)step * w->step.h, w->x);
 }

@@ -32,8 +32,8 @@ struct cb_outcome {
   double seconds; /* of step_s, for a simulated second */
 };
 
-/* Who sees the body at its start and after every so many steps: positions x[3*nodes] at time
- * t, s. What it returns ends the run unless it is CB_OK. */
+/* Who sees the body at its start, after every so many steps and in the end: positions x[3*nodes] at
+ * time t, s. What it returns ends the run unless it is CB_OK. */
 struct cb_watch {
   size_t every;
   enum cb_status (*see)(void *context, double t, const double *x);
