@@ -49,6 +49,8 @@ ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(f
 # The slowest first, so that no processor waits for them in the end.
 OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE:%.c=$(BUILD)/%.o)
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+# Scenes that the program carries with it.
+$(BUILD)/harness/verify/claims_scenes.o: scenes/rabbit-crush.json scenes/liver-yank.json
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
