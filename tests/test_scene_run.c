@@ -255,6 +255,9 @@ static void what_is_absent_costs_nothing(void **state) {
   with = s;
   with.alpha = 1e-3;
   assert_int_equal(in_scene(with), least);
+  with = s; /* a ground looks at positions, until somebody is on it */
+  with.grounded = true, with.ground = -1;
+  assert_int_equal(in_scene(with), least);
   with = s; /* handles are moved, not computed */
   with.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0}, 0.01};
   with.handle_count = 1;

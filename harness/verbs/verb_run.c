@@ -12,7 +12,8 @@
 static const char doc[] =
     "Simulate a scene with one variant and say how long a step takes, against real time, and how "
     "the body ends; with several, each after the other, as a table. With --output, write that "
-    "table to DIR/NAME-run.csv, and pictures of the first variant: NAME.pvd for ParaView, with a "
+    "table to DIR/NAME-run.csv, and pictures of the first variant of the first --variant: NAME.pvd "
+    "for ParaView, with a "
     ".vtu file for each picture, and what plots/draw.sh DIR draws a strip and an animation of.";
 
 enum { KEY_ITERATIONS = 0x5000, KEY_PICTURES, KEY_RESOLUTION };
@@ -123,16 +124,29 @@ static void add_row(struct cb_table *t, const struct cb_body *body, const char *
 
 /* ---- all of them ---------------------------------------------------------------------------- */
 
-/* list[*count] := what is asked for, or the one that is recommended mostly; room for all. */
-static enum cb_status the_variants(const struct cb_options *o, const struct cb_variant **list,
-                                   size_t *count) {
+/* Those that one glob selects and no earlier one did. */
+static void add_variants(struct cb_options one, const struct cb_variant **list, size_t *count) {
+  const size_t before = *count;
+  for (const struct cb_variant *v = cb_variants(NULL); v->model; v++) {
+    bool listed = false;
+    for (size_t i = 0; i < before; i++) listed |= list[i] == v;
+    if (!listed && cb_options_selects(&one, v)) list[(*count)++] = v;
+  }
+}
+
+/* list[*count] := what is asked for, in the order of the globs, or the one that is recommended
+ * mostly; room for all. */
+static void the_variants(const struct cb_options *o, const struct cb_variant **list,
+                         size_t *count) {
   char name[CB_NAME];
   *count = 0;
   snprintf(name, sizeof name, "qr-exact/ebe-cluster/%s", cb_bench_lanes(sizeof(float))->name);
   if (!o->glob_count) list[(*count)++] = cb_variant_find(name);
-  for (const struct cb_variant *v = cb_variants(NULL); o->glob_count && v->model; v++)
-    if (cb_options_selects(o, v)) list[(*count)++] = v;
-  return CB_OK;
+  for (size_t g = 0; g < o->glob_count; g++) {
+    struct cb_options one = *o;
+    one.globs[0] = o->globs[g], one.glob_count = 1;
+    add_variants(one, list, count);
+  }
 }
 
 static enum cb_status run_all(const struct cb_body *body, const struct cb_options *o,
@@ -173,8 +187,9 @@ static enum cb_status run(int argc, char **argv) {
   if (status) return status;
   cb_variants(&count);
   const struct cb_variant **list = malloc(count * sizeof *list);
-  status = list ? the_variants(&o, list, &count) : cb_fail_memory("the runs");
-  if (!status) status = cb_scene_read(o.scene_path, &scene);
+  if (!list) return cb_fail_memory("the runs");
+  the_variants(&o, list, &count);
+  status = cb_scene_read(o.scene_path, &scene);
   if (!status) status = cb_body_create(&scene, r.resolution, &body);
   if (!status) status = run_all(&body, &o, &r, list, count);
   cb_body_free(&body);
