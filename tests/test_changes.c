@@ -122,7 +122,7 @@ static void a_stage_is_a_beginning(void **state) {
   staged.fixed[0] = stiff.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}};
   staged.fixed_count = stiff.fixed_count = 1;
   staged.twist = stiff.twist = 0.5;
-  staged.stage[0] = (struct cb_stage){0.04, 1e5}, staged.stage_count = 1;
+  staged.stage[0] = (struct cb_stiffening){0.04, 1e5}, staged.stage_count = 1;
   for (size_t v = 0; v < 2; v++) {
     struct track a = run(&stiff, variants[v], v ? 0 : 20, &o);
     struct track b = run(&staged, variants[v], v ? 0 : 20, &o);
@@ -142,7 +142,7 @@ static void stages_follow_each_other(void **state) {
   s.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}}, s.fixed_count = 1;
   s.gravity[2] = -10;
   struct track a = run(&s, "polar-exact/ebe/f64", 20, &soft);
-  s.stage[0] = (struct cb_stage){0.02, 1e7}, s.stage[1] = (struct cb_stage){0.05, 1e5};
+  s.stage[0] = (struct cb_stiffening){0.02, 1e7}, s.stage[1] = (struct cb_stiffening){0.05, 1e5};
   s.stage_count = 2;
   struct track b = run(&s, "polar-exact/ebe/f64", 20, &o);
   const size_t n = 3 * a.nodes;
@@ -214,7 +214,7 @@ static void changes_are_the_same_for_both_solvers(void **state) {
   static struct cb_outcome o;
   struct cb_scene s = block(1e4);
   s.gravity[2] = -10, s.velocity[2] = -0.5, s.grounded = true, s.ground = -0.003;
-  s.stage[0] = (struct cb_stage){0.05, 1e5}, s.stage_count = 1;
+  s.stage[0] = (struct cb_stiffening){0.05, 1e5}, s.stage_count = 1;
   s.handle[0] = (struct cb_handle){{{0, 0, 1}, {0, 0, 1}}, {0}, {0.01, 0, 0}, 0.02, 0.04};
   s.handle_count = 1;
   struct track a = run(&s, "polar-exact/ebe/f64", 120, &o);

@@ -97,7 +97,7 @@ static enum cb_status read_handle(struct cb_json *json, const json_t *object, st
 
 static enum cb_status read_stage(struct cb_json *json, const json_t *object, struct cb_scene *s,
                                  size_t n) {
-  struct cb_stage *stage = &s->stage[n];
+  struct cb_stiffening *stage = &s->stage[n];
   struct cb_material unused;
   const double before = n ? s->stage[n - 1].from : 0;
   const struct cb_field fields[] = {{"from_s", CB_FIELD_NUMBER, &stage->from, TINY, ANY, true},

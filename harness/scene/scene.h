@@ -31,7 +31,7 @@ struct cb_handle {
 };
 
 /* Young's modulus from that time on, where it is not the material's all the time. */
-struct cb_stage {
+struct cb_stiffening {
   double from, young; /* s, Pa */
 };
 
@@ -60,7 +60,7 @@ struct cb_scene {
   struct cb_selection fixed[CB_SCENE_LIST];
   struct cb_load load[CB_SCENE_LIST];
   struct cb_handle handle[CB_SCENE_LIST];
-  struct cb_stage stage[CB_SCENE_LIST]; /* in ascending order */
+  struct cb_stiffening stage[CB_SCENE_LIST]; /* in ascending order */
   size_t fixed_count, load_count, handle_count, stage_count;
   double gravity[3];           /* m/s^2 */
   bool grounded;               /* there is a ... */
