@@ -19,7 +19,7 @@ __asm__(".section .rodata\n"
         ".previous\n");
 extern const char cb_scene_rabbit_text[], cb_scene_liver_text[];
 
-static const double RESOLUTION = 0.625; /* a quarter of the elements: seconds for all models */
+static const double RESOLUTION = 0.8; /* half of the elements: seconds for all models */
 enum { ITERATIONS = 20 };
 static const char PAPER[] = "qr-updated";
 
