@@ -295,9 +295,8 @@ static void print_split(const struct cb_results *r, FILE *stream) {
   for (size_t i = 0; t && i < r->roofline_count; i++) {
     const struct cb_roofline *p = &r->rooflines[i], *c;
     const struct cb_variant *v = cb_variant_find(p->variant);
-    if (strcmp(p->work, WORK_NAME[0]) != 0 || !v || v->storage != CB_EBE ||
-        !(c = in_clusters(r, p)))
-      continue;
+    if (strcmp(p->work, WORK_NAME[0]) != 0 || !v || v->storage != CB_EBE) continue;
+    if (v->arithmetic->lanes == 1 || !(c = in_clusters(r, p))) continue; /* one lane, one node */
     const double tets = (double)p->tetrahedra, single = p->time.value / tets;
     const double visit = (single - c->time.value / tets) / (p->visits - c->visits);
     const double rest = single - visit * p->visits, at_peak = p->flops / p->peak;
