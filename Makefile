@@ -49,6 +49,8 @@ ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(f
 # The slowest first, so that no processor waits for them in the end.
 OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE:%.c=$(BUILD)/%.o)
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+# Scenes that the program carries with it.
+$(BUILD)/harness/verify/claims_scenes.o: scenes/rabbit-crush.json scenes/liver-yank.json
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
@@ -93,6 +95,13 @@ trade: all ## error against time of every setting on a scene (SCENE=FILE), drawn
 	@$(BUILD)/corobench trade $(SCENE) --output results/latest
 	@plots/draw.sh results/latest
 
+films: all ## the scenes of figures 5 and 6: how every model ends, a strip and an animation
+	@for scene in rabbit-crush liver-yank; do \
+	  $(BUILD)/corobench run scenes/$$scene.json --variant polar-exact/ebe/f64 --variant '*/ebe/f64' \
+	    --output results/latest/films || exit; \
+	done
+	@plots/draw.sh results/latest/films
+
 RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
 plots: | $(FIRST) ## draw the figures again from stored results, without measuring (RESULTS=DIR)
 	@plots/draw.sh $(RESULTS)
@@ -129,7 +138,7 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench truth extremes trade plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races verify bench truth extremes trade films plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -142,6 +151,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench truth extremes trade plots help clean always
+.PHONY: all programs setup test sanitize races verify bench truth extremes trade films plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -18,7 +18,7 @@ cells(p) = "< awk -F, 'NR > 1 && $4 ~ /^" . p . "/ {" . \
   "if (!(k in rank) || $6 > rank[k]) {rank[k] = $6; count[k] = n}" . \
   "else if ($6 == rank[k] && n > count[k]) count[k] = n}" . \
   "END {print \"x,y,state,label\"; for (k in rank) print k \",\" rank[k] \",\" " . \
-  "substr(\"- ilX\", rank[k] + 1, 1) (count[k] ? count[k] : \"\")}' " . map
+  "substr(\"-.iLX\", rank[k] + 1, 1) (count[k] ? count[k] : \"\")}' " . map
 family(m) = system("echo " . m . " | sed -E 's/-(precomputed|updated|updated-volume|exact|lazy|tuned|tangent|tangent-clamped)$//'")
 
 cell_w = 46.0; cell_h = 19.0
@@ -27,8 +27,8 @@ panel = cell_w * words(sweeps)
 width = left + 2 * panel + between + 15
 height = top + cell_h * words(models) + bottom
 array SHADE[5] = ["#ffffff", "#ffffff", "#f2dc8c", "#e07b30", "#6b0f1a"]
-array MEANING[5] = ["- not judged", "(blank) right", "i inaccurate: more than 1000 roundings times the condition", \
-  "l breaks a law that it claims", "X not finite"]
+array MEANING[5] = ["- not judged", ". right", "i inaccurate: more than 1000 roundings times the condition", \
+  "L breaks a law that it claims", "X not finite"]
 
 rowlabels = ""; blanks = ""; columns = ""
 do for [i = 1:words(models)] {
@@ -57,19 +57,19 @@ do for [kind in "svg png"] {
       set arrow 100 + i from graph 0, first i - 0.5 to graph 1, first i - 0.5 nohead front linecolor "#404040" linewidth 1.2
     }
   }
+  at = 20
   do for [i = 1:5] {
-    y = 62.0 - 0 * i
-    set object 10 + i rectangle at screen (0.02 * width + (i == 1 ? 0 : i == 2 ? 120 : i == 3 ? 240 : i == 4 ? 650 : 880)) / width, screen y / height \
-      size screen 16.0 / width, screen 14.0 / height fillcolor rgb SHADE[i] fillstyle solid border linecolor "#404040"
-    set label 10 + i MEANING[i] at screen (0.02 * width + 14 + (i == 1 ? 0 : i == 2 ? 120 : i == 3 ? 240 : i == 4 ? 650 : 880)) / width, screen y / height \
-      font ",10" noenhanced
+    set object 10 + i rectangle at screen at / width, screen 62.0 / height size screen 16.0 / width, \
+      screen 14.0 / height fillcolor rgb SHADE[i] fillstyle solid border linecolor "#404040"
+    set label 10 + i MEANING[i] at screen (at + 14.0) / width, screen 62.0 / height font ",10" noenhanced
+    at = at + 50 + 7.2 * strlen(MEANING[i])
   }
   do for [p = 1:2] {
     x = left + (p - 1) * (panel + between)
     set lmargin at screen x / width; set rmargin at screen (x + panel) / width
     set tmargin at screen 1 - top / height; set bmargin at screen bottom / height
     eval "set ytics scale 0 noenhanced font ',9' (" . (p == 1 ? rowlabels : blanks) . ")"
-    set label 2 word(precisions, p) . " and its lanes" at graph 0.5, screen 1 - 42.0 / height center font ",12"
+    set label 2 word(precisions, p) . ", scalar and in lanes" at graph 0.5, screen 1 - 42.0 / height center font ",12"
     plot for [s = 0:4] cells(word(precisions, p)) \
         using (column("state") == s ? column("x") : NaN):"y":(0.5):(0.5) with boxxyerror \
         fillcolor rgb SHADE[s + 1] fillstyle solid border linecolor "#c0c0c0", \
@@ -77,6 +77,8 @@ do for [kind in "svg png"] {
         with labels font ",8" textcolor "#000000" noenhanced, \
       cells(word(precisions, p)) using (column("state") == 4 ? column("x") : NaN):"y":(strcol("label")) \
         with labels font ",8" textcolor "#ffffff" noenhanced
+    unset label 1 # once is enough
+    unset for [i = 11:15] label i
   }
   unset multiplot
   unset output

@@ -79,12 +79,16 @@ static double unit(const struct cb_reference *r, const double *a, const double *
   return most + r->roundoff * norm(12, a) + r->least;
 }
 
+/* With a for the origin: far from it, double could not tell the moved positions apart. No
+ * force changes by that. */
 static void move(gsl_rng *rng, double roundoff, const struct cb_cases *from, struct cb_cases *to) {
   for (size_t n = 0; n < from->count; n++) {
-    const double size = longest(from->x + 12 * n), rest = longest(from->X + 12 * n);
-    for (size_t i = 12 * n; i < 12 * (n + 1); i++) {
-      to->x[i] = from->x[i] + gsl_ran_gaussian(rng, moved_by * roundoff * size);
-      to->X[i] = from->X[i] + (from->unit ? 0 : gsl_ran_gaussian(rng, moved_by * roundoff * rest));
+    const double *x = from->x + 12 * n, *X = from->X + 12 * n;
+    const double now = moved_by * roundoff * longest(x);
+    const double rest = from->unit ? 0 : moved_by * roundoff * longest(X);
+    for (size_t i = 0; i < 12; i++) {
+      to->x[12 * n + i] = x[i] - x[i % 3] + gsl_ran_gaussian(rng, now);
+      to->X[12 * n + i] = X[i] - X[i % 3] + gsl_ran_gaussian(rng, rest);
     }
   }
 }

@@ -108,9 +108,16 @@ static void word(struct cb_table *t, const struct cell *c) {
     cb_table_text(t, c->state == CB_BREAKS ? c->worst->law : cb_extreme_state_name[c->state]);
 }
 
+static bool has_rows(const struct cb_extremes *all, const char *sweep) {
+  for (size_t i = 0; i < all->count; i++)
+    if (strcmp(all->row[i].sweep, sweep) == 0) return true;
+  return false;
+}
+
 struct cb_table *cb_extremes_words(const struct cb_extremes *all) {
   char columns[512] = "model,storage,arithmetic";
   for (size_t s = 0; cb_sweeps[s]; s++) {
+    if (!has_rows(all, cb_sweeps[s]->name)) continue;
     strncat(columns, ",", sizeof columns - strlen(columns) - 1);
     strncat(columns, cb_sweeps[s]->name, sizeof columns - strlen(columns) - 1);
   }
@@ -121,7 +128,7 @@ struct cb_table *cb_extremes_words(const struct cb_extremes *all) {
     cb_table_text(t, all->variants[v]->arithmetic->name);
     for (size_t s = 0; cb_sweeps[s]; s++) {
       const struct cell c = cell_of(all, cb_sweeps[s]->name, all->variants[v]);
-      word(t, &c);
+      if (has_rows(all, cb_sweeps[s]->name)) word(t, &c);
     }
   }
   return t;

@@ -88,12 +88,16 @@ static enum cb_status walk_forces(const struct cb_variant *v, const struct cb_ca
   return status;
 }
 
-enum cb_status cb_walk_along(const struct cb_variant *v, struct cb_walk *w) {
+enum cb_definition cb_walk_definition(const struct cb_model *model) {
+  return model->node_frames ? CB_NEAREST_ROTATION : cb_frame_definition(model);
+}
+
+enum cb_status cb_walk_along(const struct cb_variant *v, const struct cb_walk *known,
+                             struct cb_walk *w) {
   struct cb_cases c;
-  struct cb_walk made = {.definition = cb_frame_definition(v->model),
+  struct cb_walk made = {.definition = cb_walk_definition(v->model),
                          .framed = v->model->frame != NULL,
                          .R = calloc(POINTS, 30 * sizeof *made.R)};
-  if (v->model->node_frames) made.definition = CB_NEAREST_ROTATION;
   enum cb_status status = made.R ? CB_OK : cb_fail_memory("the paths");
   if (!status) status = cb_cases_create(POINTS, true, &c);
   if (status) goto done;
@@ -104,7 +108,10 @@ enum cb_status cb_walk_along(const struct cb_variant *v, struct cb_walk *w) {
       cb_path_gradient(p, (double)k / CB_PATH_STEPS, F);
       for (int i = 0; i < 9; i++) x[3 + i % 3 * 3 + i / 3] = F[i];
     }
-  know_frames(v, &c, &made);
+  if (known)
+    memcpy(made.exact, known->exact, 9 * POINTS * sizeof *made.exact);
+  else
+    know_frames(v, &c, &made);
   if (made.framed) status = cb_cases_frames(v, &c, made.R);
   if (!status) status = walk_forces(v, &c, made.f);
   cb_cases_free(&c);

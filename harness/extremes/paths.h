@@ -25,8 +25,12 @@ struct cb_walk {
   double *f;                     /* [12] each: force / (E L^2), one step after the other */
   double *exact;                 /* [9] each: R by its definition; well-conditioned or NaN */
 };
-/* CB_MEMORY, recorded. Free with cb_walk_free. */
-enum cb_status cb_walk_along(const struct cb_variant *v, struct cb_walk *w);
+/* known: an earlier one of the same definition and precision, to take `exact` from; NULL:
+ * none. CB_MEMORY, recorded. Free with cb_walk_free. */
+enum cb_status cb_walk_along(const struct cb_variant *v, const struct cb_walk *known,
+                             struct cb_walk *w);
+/* What a walk's frames are by definition. */
+enum cb_definition cb_walk_definition(const struct cb_model *model);
 void cb_walk_free(struct cb_walk *w);
 static inline size_t cb_walk_index(size_t path, size_t step) {
   return path * (CB_PATH_STEPS + 1) + step;

@@ -60,7 +60,7 @@ enum cb_status cb_paths_table(const struct cb_extremes *all, struct cb_table **t
     struct cb_walk w;
     const struct cb_variant *v = scalar_f64(all, models[m]);
     if (!v) continue;
-    status = cb_walk_along(v, &w);
+    status = cb_walk_along(v, NULL, &w);
     for (size_t p = 0; !status && p < CB_PATHS; p++) add_path(t, models[m], p, &w);
     if (!status) cb_walk_free(&w);
   }

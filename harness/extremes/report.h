@@ -20,8 +20,8 @@ enum cb_extreme_state {
 extern const char *const cb_extreme_state_name[CB_EXTREME_STATES];
 enum cb_extreme_state cb_extreme_state(const struct cb_extreme *row);
 
-/* More of what rounding and the condition explain is an error: any of the errors, the
- * laws and the torque, all of them in those units. */
+/* More than so many times what rounding and the condition explain is inaccurate: in frame,
+ * force, product; in the orthogonality, so many roundings. */
 extern const double cb_extreme_limit;
 
 /* A row that says nothing yet: finite, every figure NaN, no law, no note. */

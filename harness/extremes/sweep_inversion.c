@@ -105,11 +105,19 @@ static bool finite_way(const struct cb_walk *w, size_t path, bool over_volume) {
   return true;
 }
 
-static enum cb_status add_variant(struct cb_extremes *all, const struct cb_variant *v) {
-  struct cb_walk w;
+/* The first walk of each definition and precision: what its frames are is known then. */
+struct walks {
+  struct cb_walk of[CB_GRAM_SCHMIDT + 1][2];
+};
+
+static enum cb_status add_variant(struct cb_extremes *all, const struct cb_variant *v,
+                                  struct walks *first) {
+  struct cb_walk w,
+      *known =
+          &first->of[cb_walk_definition(v->model)][v->arithmetic->scalar_bytes == sizeof(float)];
   const char *model = v->model->name;
   const bool warm = strncmp(model, "polar-quaternion", 16) == 0;
-  enum cb_status status = cb_walk_along(v, &w);
+  enum cb_status status = cb_walk_along(v, known->R ? known : NULL, &w);
   if (status) return status;
   for (size_t p = 0; !status && p < CB_PATHS; p++) {
     struct cb_extreme row = cb_extreme_blank("jumps", v);
@@ -119,25 +127,31 @@ static enum cb_status add_variant(struct cb_extremes *all, const struct cb_varia
     row.law = isnan(j.unexplained_at) ? "" : "continuity";
     row.value = isnan(j.unexplained_at) ? j.frame_at : j.unexplained_at;
     if (j.frame > frame_jump || j.force > 0)
-      snprintf(row.note, sizeof row.note, "%sframe by %.0f deg at %.3f, force by %.2g at %.3f",
+      snprintf(row.note, sizeof row.note, "%sframe by %.0f deg at %.3f; force by %.2g at %.3f",
                warm ? "warm: " : "", j.frame, j.frame_at, j.force, j.force_at);
     status = cb_extremes_add(all, &row);
   }
-  cb_walk_free(&w);
+  if (known->R)
+    cb_walk_free(&w);
+  else
+    *known = w;
   return status;
 }
 
 static enum cb_status run_jumps(struct cb_extremes *all) {
   enum cb_status status = CB_OK;
+  struct walks first = {0};
   size_t variants = 0;
   while (all->variants[variants]) variants++;
   cb_progress_begin("jumps", (double)variants);
   for (size_t v = 0; !status && v < variants; v++) {
     cb_progress((double)v, all->variants[v]->model->name);
-    status = add_variant(all, all->variants[v]);
+    status = add_variant(all, all->variants[v], &first);
     if (!status && cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted; no table");
   }
   cb_progress_end();
+  for (size_t d = 0; d <= CB_GRAM_SCHMIDT; d++)
+    for (size_t p = 0; p < 2; p++) cb_walk_free(&first.of[d][p]);
   return status;
 }
 

@@ -82,7 +82,8 @@ static enum cb_status step(const struct cb_variant *v, const struct cb_cases *c,
   if (!status) status = cb_operator_create(v, &mesh, &m, cb_step_scale(&p), 1, &op);
   if (!status) status = cb_stepper_create(op, &p, mass, fixed, &stepper);
   if (status) {
-    cb_fail_memory("a step of the sweep of units");
+    cb_fail(status, "%s/%s/%s cannot take a step of the sweep of units", v->model->name,
+            cb_storage_name[v->storage], a->name);
   } else {
     a->from_double(mesh.nodes, c->x, x);
     a->from_double(mesh.nodes, none, velocity);
@@ -146,7 +147,7 @@ static enum cb_status add_step(struct cb_extremes *all, const struct cb_variant 
   if (!status) status = step(v, c, s, dv);
   if (status) return status;
   name(s, 0, &row);
-  strncat(row.parameter, ", a step", sizeof row.parameter - strlen(row.parameter) - 1);
+  strncat(row.parameter, " in a step", sizeof row.parameter - strlen(row.parameter) - 1);
   row.finite = isfinite(norm(dv, NULL));
   if (row.finite) row.force_error = norm(dv, exact) / unit;
   return cb_extremes_add(all, &row);

@@ -45,10 +45,10 @@ static bool widest(const struct cb_arithmetic *a) {
 }
 
 static bool asked(const struct cb_options *o, const struct cb_variant *v) {
-  if (!cb_arithmetic_runs(v->arithmetic)) return false;
-  if (o->glob_count) return cb_options_selects(o, v);
   const struct cb_arithmetic *a = v->arithmetic;
-  return v->storage == CB_EBE && a->scalar_bytes <= sizeof(double) && (a->lanes == 1 || widest(a));
+  if (!cb_arithmetic_runs(a) || a->scalar_bytes > sizeof(double)) return false;
+  if (o->glob_count) return cb_options_selects(o, v);
+  return v->storage == CB_EBE && (a->lanes == 1 || widest(a));
 }
 
 static enum cb_status write_files(const struct cb_extremes *all, const char *directory) {
@@ -77,7 +77,10 @@ static enum cb_status sweep(const struct cb_options *o, const char *name) {
   for (size_t i = 0; i < count; i++)
     if (asked(o, &v[i])) variants[chosen++] = &v[i];
   struct cb_extremes all = {.seed = o->seed, .variants = variants};
-  enum cb_status status = cb_extremes_run(name, &all);
+  enum cb_status status =
+      chosen ? cb_extremes_run(name, &all)
+             : cb_fail(CB_INPUT, "--variant selects nothing that can be judged: 'counted' is what "
+                                 "the others are held against, lanes must run on this processor");
   if (!status) {
     struct cb_table *t = cb_extremes_words(&all);
     status = t ? cb_table_print(t, o->format, stdout) : cb_fail_memory("the map");
