@@ -20,9 +20,8 @@
 /* The square of a length by the longest, below which it is rounding: 16 of them. */
 #define LEAST_SQUARE BY_PRECISION(0x1p-40, 0x1p-98)
 
-INLINE MASK NOT(MASK m) { return m == 0; }
 /* low < a < high; false of what is not a number. */
-INLINE MASK WITHIN(T a, T low, T high) { return (a > low) & (a < high); }
+INLINE CHOICE within(T a, T low, T high) { return LESS(low, a) & LESS(a, high); }
 
 /* A[count] := A by the largest of its magnitudes, denormal ones too; zero stays. */
 INLINE void scale_to_one(int count, T *A) {
@@ -92,18 +91,19 @@ RARE void orthogonal_of_any(const T *F, bool reflects, T *Q) {
   scale_to_one(3, v);
   normalise_across(u, v);
   cross3(u, v, w);
-  const T sign = SELECT(dot3(w, third) < LIT(0), LIT(reflects ? -1 : 1), LIT(1));
+  MASK left = dot3(w, third) < BY_PRECISION(-0x1p-20, -0x1p-49); /* and not by rounding */
+  const T sign = SELECT(left, LIT(reflects ? -1 : 1), LIT(1));
   for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = sign * w[i];
   multiply3_nt(U, V, Q);
 }
 
-/* Where rare, Q := as above; F and Q need not be in memory for it. */
-INLINE void repair(MASK rare, const T *F, bool reflects, T *Q) {
-  if (!ANY(rare)) return;
+/* Q := as above but where usual; F and Q need not be in memory for it. */
+INLINE void repair(CHOICE usual, const T *F, bool reflects, T *Q) {
+  if (ALL(usual)) return;
   T from[9], to[9];
   for (int i = 0; i < 9; i++) from[i] = F[i];
   orthogonal_of_any(from, reflects, to);
-  for (int i = 0; i < 9; i++) Q[i] = SELECT(rare, to[i], Q[i]);
+  for (int i = 0; i < 9; i++) Q[i] = CHOOSE(usual, Q[i], to[i]);
 }
 
 #endif

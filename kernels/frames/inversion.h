@@ -12,10 +12,10 @@
  * in   F[9], Q[9]  F = Q S, Q orthogonal, S positive semi-definite
  *      sign        det Q, +1 or -1
  *      usual       where Q and sign are so; elsewhere they are not read */
-INLINE void rotation_of_orthogonal(const T *F, const T *Q, T sign, MASK usual, T *R) {
-  MASK inverted = sign < LIT(0);
+INLINE void rotation_of_orthogonal(const T *F, const T *Q, T sign, CHOICE usual, T *R) {
+  CHOICE upright = LESS(LIT(0), sign);
   for (int i = 0; i < 9; i++) R[i] = Q[i];
-  if (ANY(inverted | NOT(usual))) {
+  if (!ALL(upright & usual)) {
     T stretch[9], V[9], s[3], v[3], Qv[3];
     multiply3_tn(Q, F, stretch);
     jacobi_eigen(stretch, V, s);
@@ -29,8 +29,8 @@ INLINE void rotation_of_orthogonal(const T *F, const T *Q, T sign, MASK usual, T
     apply3(Q, v, Qv);
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
-        R[3 * i + j] = SELECT(inverted, Q[3 * i + j] - LIT(2) * (Qv[i] * v[j]), Q[3 * i + j]);
-    repair(NOT(usual), F, false, R);
+        R[3 * i + j] = CHOOSE(upright, Q[3 * i + j], Q[3 * i + j] - LIT(2) * (Qv[i] * v[j]));
+    repair(usual, F, false, R);
   }
 }
 

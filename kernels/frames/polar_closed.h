@@ -34,14 +34,14 @@ INLINE void stretch_invariants(T n, T m, T d, T *I1, T *I2) {
  * in   F[9]    row-major, 1
  * out  *usual  where Q is that to rounding: F is neither too small nor too large for
  *              the powers of it that are formed, and no needle */
-INLINE T closed_factor(const T *F, T *Q, MASK *usual) {
+INLINE T closed_factor(const T *F, T *Q, CHOICE *usual) {
   T C[9], X[9], I1, I2;
   cofactor3(F, C);
   T det = dot3(F, C), sign = SELECT(det < LIT(0), LIT(-1), LIT(1)), d = sign * det;
   T n = square9(F);
   stretch_invariants(n, square9(C), d, &I1, &I2);
-  *usual = WITHIN(n, BY_PRECISION(1e-12, 1e-40), BY_PRECISION(1e13, 1e40)) &
-           (I2 > BY_PRECISION(1e-2, 1e-3) * n);
+  *usual = within(n, BY_PRECISION(1e-12, 1e-40), BY_PRECISION(1e13, 1e40)) &
+           LESS(BY_PRECISION(1e-2, 1e-3) * n, I2);
   /* det F > 0: Q = F / I1 + cof(F + C / I1) / (I2 - d / I1); in the axes of S,
    * where s_1 -> s_1 / I1 + (s_2 + s_3 s_1 / I1)(s_3 + s_1 s_2 / I1) / ..., all
    * terms are positive. det F < 0: the same of -F. */
@@ -60,15 +60,15 @@ INLINE T closed_factor(const T *F, T *Q, MASK *usual) {
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. */
 INLINE void orthogonal_closed(const T *F, T *Q) {
-  MASK usual;
+  CHOICE usual;
   (void)closed_factor(F, Q, &usual);
-  repair(NOT(usual), F, true, Q);
+  repair(usual, F, true, Q);
 }
 
 /* R := nearest rotation to F, an inversion moved to the smallest singular value. */
 INLINE void frame_polar_closed(const T *F, T *R) {
   T Q[9];
-  MASK usual;
+  CHOICE usual;
   T sign = closed_factor(F, Q, &usual);
   rotation_of_orthogonal(F, Q, sign, usual, R);
 }

@@ -17,9 +17,9 @@
 /* What the cofactors C of F lose is seen in |F|^4 / |C|^2, from 3 to (s_1/s_2)^2: of
  * needles, digits, in float up to the sign of det F. That of a flat element does not
  * matter. Iterates of F grow eight-fold; their fourth powers are to be numbers. */
-INLINE MASK higham_usual(T square, T ratio) {
-  return WITHIN(square, BY_PRECISION(1e-16, 1e-150), BY_PRECISION(1e16, 1e150)) &
-         (ratio * square < BY_PRECISION(1e4, 1e6));
+INLINE CHOICE higham_usual(T square, T ratio) {
+  return within(square, BY_PRECISION(1e-16, 1e-150), BY_PRECISION(1e16, 1e150)) &
+         LESS(ratio * square, BY_PRECISION(1e4, 1e6));
 }
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns det Q,
@@ -27,8 +27,9 @@ INLINE MASK higham_usual(T square, T ratio) {
  * in   F[9]    row-major, 1
  * out  *usual  where Q is that to rounding: F is no needle, and neither too small nor
  *              too large for its fourth powers */
-INLINE T higham_factor(const T *F, T *Q, MASK *usual) {
+INLINE T higham_factor(const T *F, T *Q, CHOICE *usual) {
   T C[9], sign = LIT(0), keep = LIT(0);
+  *usual = LESS(sign, LIT(1));
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   /* With g^2 = |Q^-1| / |Q| and Q^-T = C / det Q an iterate is a multiple of
    * Q / |Q| +- C / |C|: no division by the volume of a flat element. A rough g is
@@ -55,17 +56,17 @@ INLINE T higham_factor(const T *F, T *Q, MASK *usual) {
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. */
 INLINE void orthogonal_higham(const T *F, T *Q) {
-  MASK usual;
+  CHOICE usual;
   (void)higham_factor(F, Q, &usual);
-  repair(NOT(usual), F, true, Q);
+  repair(usual, F, true, Q);
 }
 
 /* Q := as higham_factor by at most `iterations` scaled ones, each of length sqrt(3), fewer
  * if one moves none of the lanes by more than tolerance: for measuring what an iteration is
  * worth. */
-INLINE T higham_factor_tuned(const T *F, size_t iterations, T tolerance, T *Q, MASK *usual) {
+INLINE T higham_factor_tuned(const T *F, size_t iterations, T tolerance, T *Q, CHOICE *usual) {
   T C[9], sign = LIT(0);
-  *usual = sign == sign; /* of no iteration: F as it is */
+  *usual = LESS(sign, LIT(1));
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   for (size_t n = 0; n < iterations; n++) {
     T next[9], far = LIT(0);
@@ -89,7 +90,7 @@ INLINE T higham_factor_tuned(const T *F, size_t iterations, T tolerance, T *Q, M
 /* R := nearest rotation to F, an inversion moved to the smallest singular value. */
 INLINE void frame_polar_higham(const T *F, T *R) {
   T Q[9];
-  MASK usual;
+  CHOICE usual;
   T sign = higham_factor(F, Q, &usual);
   rotation_of_orthogonal(F, Q, sign, usual, R);
 }

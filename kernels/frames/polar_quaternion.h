@@ -76,24 +76,24 @@ RARE void quaternion_of_any(const T *F, T *q) {
   quaternion_from(R, q);
 }
 
-/* Where cold, q := by the full decomposition (a cold guess can be far off after few turns). */
-INLINE void quaternion_start(MASK cold, const T *F, T *q) {
-  if (!ANY(cold)) return;
+/* But where warm, q := by the full decomposition (a cold guess can be far off after few turns). */
+INLINE void quaternion_start(CHOICE warm, const T *F, T *q) {
+  if (ALL(warm)) return;
   T from[9], start[4];
   for (int i = 0; i < 9; i++) from[i] = F[i];
   quaternion_of_any(from, start);
-  for (int i = 0; i < 4; i++) q[i] = SELECT(cold, start[i], q[i]);
+  for (int i = 0; i < 4; i++) q[i] = CHOOSE(warm, q[i], start[i]);
 }
 
 /* ... where q is all zero. */
-INLINE void quaternion_warm(const T *F, T *q) { quaternion_start(dot4(q, q) == LIT(0), F, q); }
+INLINE void quaternion_warm(const T *F, T *q) { quaternion_start(LESS(LIT(0), dot4(q, q)), F, q); }
 
 /* Where tr F R^T = 0 a turn may have carried q beyond all numbers: by how much F has to
  * be turned is not known from there. */
 INLINE void quaternion_end(const T *F, T *q, T *R) {
   T square = dot4(q, q), inverse = RSQRT(square);
   for (int i = 0; i < 4; i++) q[i] = q[i] * inverse;
-  quaternion_start(NOT(WITHIN(square, LIT(1e-30), LIT(1e30))), F, q);
+  quaternion_start(within(square, LIT(1e-30), LIT(1e30)), F, q);
   quaternion_matrix(q, R);
 }
 

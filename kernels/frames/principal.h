@@ -17,8 +17,8 @@ INLINE void frame_from_principal(const T *F, T least, T *n, T *A, T *V, T *R) {
   T U[9], u[3], v[3], w[3], along = LIT(0);
   principal_sort(n, A, V);
   /* Fourth powers are neither denormal nor infinite. */
-  MASK usual = WITHIN(n[0], BY_PRECISION(1e-4, 1e-40), BY_PRECISION(1e12, 1e60));
-  usual = usual & (n[1] > least * n[0]);
+  CHOICE usual = within(n[0], BY_PRECISION(1e-4, 1e-40), BY_PRECISION(1e12, 1e60));
+  usual = usual & LESS(least * n[0], n[1]);
   T inverse = RSQRT(column_square(A, 0));
   for (int i = 0; i < 3; i++) u[i] = A[3 * i] * inverse;
   for (int i = 0; i < 3; i++) along = along + u[i] * A[3 * i + 1];
@@ -28,7 +28,7 @@ INLINE void frame_from_principal(const T *F, T least, T *n, T *A, T *V, T *R) {
   cross3(u, v, w);
   for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = w[i];
   multiply3_nt(U, V, R);
-  repair(NOT(usual), F, false, R);
+  repair(usual, F, false, R);
 }
 
 #endif

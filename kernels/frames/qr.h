@@ -63,22 +63,22 @@ RARE void qr_axes_of_any(const T *e, T *q, T *y) {
   y[2] = SELECT(y[2] > LIT(0), y[2], LIT(0));
 }
 
-/* q[9], y[3] := by that where rare. */
-INLINE void qr_repair(MASK rare, const T *e, T *q, T *y) {
-  if (!ANY(rare)) return;
+/* q[9], y[3] := by that but where usual. */
+INLINE void qr_repair(CHOICE usual, const T *e, T *q, T *y) {
+  if (ALL(usual)) return;
   T from[9], axes[9], local[3];
   for (int i = 0; i < 9; i++) from[i] = e[i];
   qr_axes_of_any(from, axes, local);
-  for (int i = 0; i < 9; i++) q[i] = SELECT(rare, axes[i], q[i]);
-  for (int i = 0; i < 3; i++) y[i] = SELECT(rare, local[i], y[i]);
+  for (int i = 0; i < 9; i++) q[i] = CHOOSE(usual, q[i], axes[i]);
+  for (int i = 0; i < 3; i++) y[i] = CHOOSE(usual, y[i], local[i]);
 }
 
 /* Are the squares of e_b and of what Gram-Schmidt leaves of e_c neither denormal nor
  * infinite, and is that more than rounding of what was taken from it? */
-INLINE MASK qr_usual(T square_b, T square_c, const T *y) {
+INLINE CHOICE qr_usual(T square_b, T square_c, const T *y) {
   const T least = BY_PRECISION(1e-36, 1e-300);
-  return WITHIN(square_b, least, BY_PRECISION(1e36, 1e300)) & (square_c > least) &
-         (y[2] > LIT(1.0 / 32) * ABS(y[1]));
+  return within(square_b, least, BY_PRECISION(1e36, 1e300)) & LESS(least, square_c) &
+         LESS(LIT(1.0 / 32) * ABS(y[1]), y[2]);
 }
 
 /* R := Q, right-handed, with e_b, e_c in its first axis and first plane.
@@ -98,7 +98,7 @@ INLINE void frame_qr_axes(const T *e, T *R, T *y) {
   y[2] = rest * inverse;
   for (int i = 0; i < 3; i++) q[3 + i] = inverse * r[i];
   cross3(q, q + 3, q + 6);
-  qr_repair(NOT(qr_usual(square, rest, y)), e, q, y);
+  qr_repair(qr_usual(square, rest, y), e, q, y);
   for (int i = 0; i < 9; i++) R[i] = q[i % 3 * 3 + i / 3];
 }
 

@@ -8,7 +8,7 @@ enum { HIGHAM_DEFAULT = 6 };
 
 INLINE void higham_tuned(size_t iterations, T tolerance, const T *F, T *R) {
   T Q[9], sign;
-  MASK usual;
+  CHOICE usual;
   sign = higham_factor_tuned(F, iterations ? iterations : HIGHAM_DEFAULT, tolerance, Q, &usual);
   rotation_of_orthogonal(F, Q, sign, usual, R);
 }
