@@ -216,12 +216,14 @@ static void line_of(const char *csv, const char *arithmetic, const char *group, 
   snprintf(line, 512, "%.*s", (int)strcspn(at, "\n"), at);
 }
 
+/* The verdict is the twelfth column, the ninth after the group. */
 static void assert_verdict(const struct process *p, const char *arithmetic, const char *group,
                            const char *verdict) {
-  char line[512], cell[64];
+  char line[512];
   line_of(p->out, arithmetic, group, line);
-  snprintf(cell, sizeof cell, ",%s,", verdict);
-  if (!strstr(line, cell)) fail_msg("no %s in: %s", verdict, line);
+  const char *cell = line + 1;
+  for (int i = 0; i < 10; i++) cell = strchr(cell, ',') + 1;
+  if (strncmp(cell, verdict, strlen(verdict)) != 0) fail_msg("no %s in: %s", verdict, line);
 }
 
 static void a_right_library_passes(void **state) {

@@ -12,8 +12,8 @@
 #include "harness/progress.h"
 #include "reference/oracles.h"
 
-/* The block's slowest wave takes about 0.2 s and dies away by half in 0.07 s. */
-const struct cb_step_parameters cb_recovery_step = {.h = 5e-3, .beta = 20, .iterations = 20};
+/* The block's slowest wave takes about 0.2 s and dies away to a third in 0.04 s. */
+const struct cb_step_parameters cb_recovery_step = {.h = 2e-3, .beta = 50, .iterations = 20};
 
 /* Of the size, in CB_RECOVERY_EVERY steps: what moves less will not arrive anywhere else. */
 static const double STILL = 1e-7;
@@ -146,7 +146,8 @@ enum cb_status cb_recovery_run(const struct cb_recovery_body *body,
 }
 
 const char *cb_recovery_outcome(const struct cb_recovery *r) {
-  if (!isnan(r->lost)) return "lost";
+  if (!isnan(r->lost)) return "NaN";
   if (r->back == 1) return "recovered";
+  if (!(r->distance <= 10)) return "exploded";
   return r->mirrored >= 0.5 ? "mirrored" : "stuck";
 }

@@ -34,7 +34,7 @@ void cb_recovery_body_free(struct cb_recovery_body *body); /* zeroed is allowed 
 
 /* One setting for all. */
 extern const struct cb_step_parameters cb_recovery_step;
-enum { CB_RECOVERY_STEPS = 600, CB_RECOVERY_EVERY = 10 };
+enum { CB_RECOVERY_STEPS = 2000, CB_RECOVERY_EVERY = 20 };
 enum { CB_RECOVERY_LOOKS = CB_RECOVERY_STEPS / CB_RECOVERY_EVERY + 1 };
 /* An element is at rest when |F^T F - I| is at most this: strained by about 5 %. */
 #define CB_RECOVERY_STRAIN 0.1
@@ -72,8 +72,8 @@ void cb_recoveries_free(struct cb_recoveries *all);
 struct cb_table *cb_recovery_matrix(const struct cb_recoveries *all);
 struct cb_table *cb_recovery_table(const struct cb_recoveries *all);
 struct cb_table *cb_recovery_times(const struct cb_recoveries *all);
-/* "recovered", "mirrored", "lost", "stuck": all back; at least half at rest but left-handed; not
- * finite; anything else. Static. */
+/* "recovered": all back; "mirrored": at least half at rest but left-handed; "NaN": not finite;
+ * "exploded": the distance is more than ten sizes; "stuck": anything else. Static. */
 const char *cb_recovery_outcome(const struct cb_recovery *r);
 
 #endif

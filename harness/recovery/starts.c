@@ -30,14 +30,15 @@ static void subtract(const double *a, const double *b, double *c) {
   for (int i = 0; i < 3; i++) c[i] = a[i] - b[i];
 }
 
-/* Vertices `moved` of x: mirrored in the plane through `foot` across n. All of them are equally
- * far from it. */
+/* Vertices `moved` of x: pushed through the plane through `foot` across n, from which they are
+ * equally far, to half as far on the other side. As far would be the mirrored shape, the same for
+ * all of them, with no nearest rotation. */
 static void push_through(double *x, const double *foot, const double *n, unsigned moved) {
   for (int v = 0; v < 4; v++) {
     double above[3];
     if (!(moved & 1u << v)) continue;
     subtract(x + 3 * v, foot, above);
-    const double step = 2 * dot(above, n) / dot(n, n);
+    const double step = 1.5 * dot(above, n) / dot(n, n);
     for (int i = 0; i < 3; i++) x[3 * v + i] -= step * n[i];
   }
 }
@@ -125,15 +126,15 @@ static void anywhere(const struct cb_mesh *mesh, unsigned long seed, double *x) 
 }
 
 const struct cb_recovery_start cb_recovery_starts[CB_RECOVERY_STARTS] = {
-    {"vertex a", "a mirrored in the plane of the other three", false, vertex_a},
+    {"vertex a", "a pushed through the other three's plane, to half its height", false, vertex_a},
     {"vertex b", "b likewise", false, vertex_b},
     {"vertex c", "c likewise", false, vertex_c},
     {"vertex d", "d likewise", false, vertex_d},
-    {"edge ab", "ab pushed through cd, as far as it was away; the same shape as cd through ab",
+    {"edge ab", "ab pushed through cd, to half their distance; the same shape as cd through ab",
      false, edge_ab},
-    {"edge ac", "ac pushed through bd", false, edge_ac},
-    {"edge ad", "ad pushed through bc", false, edge_ad},
-    {"centre", "all four mirrored in the centre", false, through_centre},
+    {"edge ac", "ac through bd", false, edge_ac},
+    {"edge ad", "ad through bc", false, edge_ad},
+    {"centre", "all four mirrored in the centre: the mirrored shape", false, through_centre},
     {"mirrored", "the block mirrored in a plane", true, mirrored},
     {"plane", "the block collapsed to a plane", true, plane},
     {"line", "the block collapsed to a line", true, line},

@@ -76,15 +76,14 @@ static void number(struct cb_table *t, double value) {
 }
 
 static void matrix_cell(struct cb_table *t, const struct cb_recovery *r) {
+  const char *outcome = cb_recovery_outcome(r);
   char cell[32];
-  if (!isnan(r->lost))
-    snprintf(cell, sizeof cell, "NaN");
-  else if (r->back == 1)
+  if (strcmp(outcome, "recovered") == 0)
     snprintf(cell, sizeof cell, "%.2f s", r->time);
-  else if (r->mirrored >= 0.5)
-    snprintf(cell, sizeof cell, "mirrored");
-  else
+  else if (strcmp(outcome, "stuck") == 0)
     snprintf(cell, sizeof cell, "%.0f %%", floor(100 * r->back));
+  else
+    snprintf(cell, sizeof cell, "%s", outcome);
   cb_table_text(t, cell);
 }
 

@@ -14,8 +14,9 @@ static const char doc[] =
     "what --variant selects. With --output, write recovery.csv, recovery.json and "
     "recovery-time.csv."
     "\vA cell of the table: the simulated time after which all elements are at rest (|F'F - I| at "
-    "most 0.1) and right-handed; or the share of the elements that are; 'mirrored': at least half "
-    "are at rest but left-handed; 'NaN': a position is not finite. CSV and JSON have a row for "
+    "most 0.1) and right-handed; or the share of the elements that are; mirrored: at least half "
+    "are at rest but left-handed; exploded: more than ten sizes from the rest shape; NaN: a "
+    "position is not finite. CSV and JSON have a row for "
     "each "
     "start and model, with the distance from the rest shape after the best rigid motion, root mean "
     "square of the body's size, and the turn of that motion.";
