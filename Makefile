@@ -91,6 +91,10 @@ trade: all ## error against time of every setting on a scene (SCENE=FILE), drawn
 	@$(BUILD)/corobench trade $(SCENE) --output results/latest
 	@plots/draw.sh results/latest
 
+recovery: all ## which models come back from inverted and collapsed shapes, drawn
+	@$(BUILD)/corobench recovery --output results/latest
+	@plots/draw.sh results/latest
+
 RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
 plots: | $(FIRST) ## draw the figures again from stored results, without measuring (RESULTS=DIR)
 	@plots/draw.sh $(RESULTS)
@@ -133,7 +137,7 @@ $(BUILD)/tests/frames/%.so: tests/frames/%.c tests/frames/jacobi.h $(BUILD)/flag
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench truth trade plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races verify bench truth trade recovery plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -146,6 +150,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench truth trade plots help clean always
+.PHONY: all programs setup test sanitize races verify bench truth trade recovery plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

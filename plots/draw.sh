@@ -10,7 +10,7 @@ if ! command -v gnuplot >/dev/null; then
   exit 2
 fi
 if [ ! -f "$dir/bench.csv" ] && [ ! -f "$dir/figure3.csv" ] &&
-  [ ! -f "$dir/trade.csv" ] && [ ! -f "$dir/tangent.csv" ]; then
+  [ ! -f "$dir/trade.csv" ] && [ ! -f "$dir/tangent.csv" ] && [ ! -f "$dir/recovery.csv" ]; then
   echo "plots: there are no results in $dir; 'make bench' measures some" >&2
   exit 2
 fi
@@ -29,7 +29,7 @@ draw() {
 # Figures of an earlier run must not stand beside the data of this one.
 for kind in svg png; do
   rm -f "$dir"/figure*."$kind"
-  for name in convergence speed roofline scaling frame33 trade tangent; do rm -f "$dir/$name.$kind"; done
+  for name in convergence speed roofline scaling frame33 trade tangent recovery recovery-time; do rm -f "$dir/$name.$kind"; done
 done
 has figure3.csv '^[^,]+,[0-9]' && draw figure3
 has fits.csv '^[^,]+,[0-9]' && draw figure4
@@ -40,6 +40,7 @@ has roofline.csv '^product,' && draw roofline
 has scaling.csv '^[^,]+,[0-9]' && draw scaling
 has frame33.csv '^([^,]+,){5}[0-9]' && draw frame33
 has tangent.csv '^[^,]+,[0-9]' && draw tangent
+has recovery.csv '^[^,]+,[^,]+,[0-9]' && draw recovery && draw recovery-time
 has trade.csv '^[^,]+,(model|storage),' && draw trade
 find "$dir" -maxdepth 1 \( -name "*.svg" -o -name "*.png" \) | sort
 exit $status

@@ -108,11 +108,12 @@ static void let_go(struct way *w, struct cb_recovery *r) {
     if (back < r->elements) away = n;
     if (n % CB_RECOVERY_EVERY == 0) {
       r->share[look++] = r->back;
-      if (n > 0 && still(w)) break;
+      look_at_shape(w, r);
+      if ((n > 0 && still(w)) || !(r->distance <= CB_RECOVERY_FAR)) break;
     }
     cb_stepper_step(w->job.stepper, w->job.x, w->job.v, NULL);
   }
-  if (!isnan(r->lost)) r->back = r->mirrored = 0;
+  if (!isnan(r->lost)) r->back = r->mirrored = 0, r->distance = r->turn = NAN;
   if (r->back == 1) r->time = (double)(away + 1) * h;
   while (look < CB_RECOVERY_LOOKS) r->share[look++] = r->back; /* as it stays */
   if (isnan(r->lost)) look_at_shape(w, r);
@@ -148,6 +149,6 @@ enum cb_status cb_recovery_run(const struct cb_recovery_body *body,
 const char *cb_recovery_outcome(const struct cb_recovery *r) {
   if (!isnan(r->lost)) return "NaN";
   if (r->back == 1) return "recovered";
-  if (!(r->distance <= 10)) return "exploded";
+  if (!(r->distance <= CB_RECOVERY_FAR)) return "exploded";
   return r->mirrored >= 0.5 ? "mirrored" : "stuck";
 }

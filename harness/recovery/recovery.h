@@ -15,6 +15,8 @@ struct cb_recovery_start {
   void (*place)(const struct cb_mesh *mesh, unsigned long seed, double *x);
 };
 enum { CB_RECOVERY_STARTS = 13 };
+/* How far a vertex is pushed through, of its height, and an edge, of its distance. */
+#define CB_RECOVERY_DEPTH 0.5
 extern const struct cb_recovery_start cb_recovery_starts[CB_RECOVERY_STARTS];
 const struct cb_recovery_start *cb_recovery_start(const char *name); /* NULL: there is none */
 
@@ -38,6 +40,8 @@ enum { CB_RECOVERY_STEPS = 2000, CB_RECOVERY_EVERY = 20 };
 enum { CB_RECOVERY_LOOKS = CB_RECOVERY_STEPS / CB_RECOVERY_EVERY + 1 };
 /* An element is at rest when |F^T F - I| is at most this: strained by about 5 %. */
 #define CB_RECOVERY_STRAIN 0.1
+/* Farther from the rest shape than so many sizes it has exploded, and the run ends. */
+#define CB_RECOVERY_FAR 10
 
 struct cb_recovery {
   const struct cb_recovery_start *start;
@@ -73,7 +77,7 @@ struct cb_table *cb_recovery_matrix(const struct cb_recoveries *all);
 struct cb_table *cb_recovery_table(const struct cb_recoveries *all);
 struct cb_table *cb_recovery_times(const struct cb_recoveries *all);
 /* "recovered": all back; "mirrored": at least half at rest but left-handed; "NaN": not finite;
- * "exploded": the distance is more than ten sizes; "stuck": anything else. Static. */
+ * "exploded": the distance is more than CB_RECOVERY_FAR; "stuck": anything else. Static. */
 const char *cb_recovery_outcome(const struct cb_recovery *r);
 
 #endif

@@ -38,7 +38,7 @@ static void push_through(double *x, const double *foot, const double *n, unsigne
     double above[3];
     if (!(moved & 1u << v)) continue;
     subtract(x + 3 * v, foot, above);
-    const double step = 1.5 * dot(above, n) / dot(n, n);
+    const double step = (1 + CB_RECOVERY_DEPTH) * dot(above, n) / dot(n, n);
     for (int i = 0; i < 3; i++) x[3 * v + i] -= step * n[i];
   }
 }

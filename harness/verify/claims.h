@@ -10,7 +10,7 @@ enum { CB_CLAIMS_MOST = 24 };
 struct cb_claim {
   char id[12];        /* C1 ... C10, erratum, and ours: T1 ... */
   char paper[200];    /* what the paper (T: this project) says */
-  char measured[480]; /* the numbers */
+  char measured[560]; /* the numbers */
   char verdict[200];  /* reproduced / not reproduced / only if ...; for a claim
                          that is exact: exactly */
   bool failed;        /* something this program guarantees does not hold */
