@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 footer_file = "recovery-footer.txt"
 load "plots/style.gp"
-width = 1150
+width = 1200
 height = 460
 # One of each kind; the others of a kind lie on its line.
 wanted = "qr-precomputed qr-exact qr-updated polar-closed-precomputed polar-closed-updated " . \
