@@ -6,14 +6,16 @@
 #include "reference/exact_frames.h"
 
 #include <math.h>
-#include <quadmath.h>
 #include <stdbool.h>
 
 typedef __float128 Q;
 
+Q sqrtq(Q); /* of libquadmath, whose header not every compiler finds */
+
 /* What is smaller than this, relatively, is rounding in quad. */
 static const Q NOTHING = 1e-30Q;
 
+static Q magnitude(Q a) { return a < 0 ? -a : a; }
 static Q dot(const Q *a, const Q *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static Q length(const Q *a) { return sqrtq(dot(a, a)); }
 
@@ -27,7 +29,7 @@ static void cross(const Q *a, const Q *b, Q *c) {
 static void normal_to(const Q *u, Q *n) {
   int least = 0;
   for (int i = 1; i < 3; i++)
-    if (fabsq(u[i]) < fabsq(u[least])) least = i;
+    if (magnitude(u[i]) < magnitude(u[least])) least = i;
   const Q axis[3] = {least == 0, least == 1, least == 2};
   cross(u, axis, n);
   const Q l = length(n);
@@ -52,9 +54,9 @@ static bool orthonormal(const Q *u, const Q *a, Q *v) {
  * Returns whether they were not. */
 static bool turn(Q *a, Q *b, Q *va, Q *vb) {
   const Q p = dot(a, a), q = dot(b, b), r = dot(a, b);
-  if (!(fabsq(r) > 1e-33Q * sqrtq(p * q))) return false;
+  if (!(magnitude(r) > 1e-33Q * sqrtq(p * q))) return false;
   const Q zeta = (q - p) / (2 * r);
-  const Q t = (zeta < 0 ? -1 : 1) / (fabsq(zeta) + sqrtq(1 + zeta * zeta));
+  const Q t = (zeta < 0 ? -1 : 1) / (magnitude(zeta) + sqrtq(1 + zeta * zeta));
   const Q c = 1 / sqrtq(1 + t * t), s = c * t;
   for (int i = 0; i < 3; i++) {
     const Q x = a[i], y = va[i];
@@ -96,7 +98,7 @@ void cb_exact_polar(const double F[9], struct cb_exact_frame *exact) {
   }
   exact->column[0] = exact->column[1] = 0;
   const Q gap = exact->s[1] + exact->s[2];
-  exact->condition = gap > NOTHING * s ? (double)fmaxq(s / gap, 1) : INFINITY;
+  exact->condition = gap > NOTHING * s ? fmax((double)(s / gap), 1) : INFINITY;
 }
 
 void cb_exact_qr(const double F[9], struct cb_exact_frame *exact) {

@@ -9,7 +9,6 @@
 #include <stdint.h>
 
 #include <cmocka.h>
-#include <quadmath.h>
 
 #include "harness/frames/frames.h"
 #include "reference/oracles.h"
@@ -24,6 +23,10 @@ static const char *library(const char *name) {
   return path;
 }
 
+typedef __float128 quad;
+static quad magnitude(quad a) { return a < 0 ? -a : a; }
+static quad larger(quad a, quad b) { return a > b ? a : b; }
+
 /* ---- the set ------------------------------------------------------------------------------ */
 
 static struct cb_frame_set make(enum cb_frame_kind kind, size_t scalar_bytes) {
@@ -32,18 +35,18 @@ static struct cb_frame_set make(enum cb_frame_kind kind, size_t scalar_bytes) {
   return set;
 }
 
-static __float128 skew(const __float128 *R) {
-  __float128 worst = 0;
+static quad skew(const quad *R) {
+  quad worst = 0;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
-      __float128 dot = -(i == j);
+      quad dot = -(i == j);
       for (int k = 0; k < 3; k++) dot += R[3 * k + i] * R[3 * k + j];
-      worst = fmaxq(worst, fabsq(dot));
+      worst = larger(worst, magnitude(dot));
     }
   return worst;
 }
 
-static __float128 determinant(const __float128 *A) {
+static quad determinant(const quad *A) {
   return A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
          A[2] * (A[3] * A[7] - A[4] * A[6]);
 }
@@ -52,21 +55,21 @@ static __float128 determinant(const __float128 *A) {
  * are the conditions that define them, but for the signs. */
 static void exact_answers_are_exact(void **state) {
   (void)state;
-  const __float128 limit = 1e-31Q; /* 2^-113 is 1e-34; rows of F up to 50 times its scale */
+  const quad limit = 1e-31Q; /* 2^-113 is 1e-34; rows of F up to 50 times its scale */
   for (int kind = 0; kind < 2; kind++)
     for (size_t bytes = 4; bytes <= 8; bytes += 4) {
       struct cb_frame_set set = make((enum cb_frame_kind)kind, bytes);
       for (size_t n = 0; n < set.count; n++) {
         const struct cb_frame_input *in = &set.input[n];
-        __float128 T[9] = {0}, size = 0;
-        for (int i = 0; i < 9; i++) size = fmaxq(size, fabsq(in->F[i]));
+        quad T[9] = {0}, size = 0;
+        for (int i = 0; i < 9; i++) size = larger(size, magnitude(in->F[i]));
         for (int i = 0; i < 9; i++)
           for (int k = 0; k < 3; k++) T[i] += in->exact.R[3 * k + i / 3] * in->F[3 * k + i % 3];
         assert_true(skew(in->exact.R) <= limit);
-        assert_true(fabsq(determinant(in->exact.R) - 1) <= limit);
-        assert_true(fabsq(T[3] - (kind == CB_FRAME_QR ? 0 : T[1])) <= limit * size);
-        assert_true(fabsq(T[6] - (kind == CB_FRAME_QR ? 0 : T[2])) <= limit * size);
-        assert_true(fabsq(T[7] - (kind == CB_FRAME_QR ? 0 : T[5])) <= limit * size);
+        assert_true(magnitude(determinant(in->exact.R) - 1) <= limit);
+        assert_true(magnitude(T[3] - (kind == CB_FRAME_QR ? 0 : T[1])) <= limit * size);
+        assert_true(magnitude(T[6] - (kind == CB_FRAME_QR ? 0 : T[2])) <= limit * size);
+        assert_true(magnitude(T[7] - (kind == CB_FRAME_QR ? 0 : T[5])) <= limit * size);
         if (kind == CB_FRAME_QR) assert_true(T[0] >= 0 && T[4] >= -limit * size);
       }
       cb_frame_set_free(&set);
@@ -79,13 +82,13 @@ static void no_rotation_is_nearer(void **state) {
   struct cb_frame_set set = make(CB_FRAME_POLAR, sizeof(double));
   for (size_t n = 0; n < set.count; n++) {
     const struct cb_frame_input *in = &set.input[n], *other = &set.input[(n + 77) % set.count];
-    const __float128 *s = in->exact.s, largest = s[0] + s[1] + s[2];
-    __float128 own = 0, foreign = 0;
+    const quad *s = in->exact.s, largest = s[0] + s[1] + s[2];
+    quad own = 0, foreign = 0;
     for (int i = 0; i < 9; i++) own += in->exact.R[i] * in->F[i];
     for (int i = 0; i < 9; i++) foreign += other->exact.R[i] * in->F[i];
-    assert_true(fabsq(own - largest) <= 1e-31Q * s[0]);
+    assert_true(magnitude(own - largest) <= 1e-31Q * s[0]);
     assert_true(foreign <= own + 1e-31Q * s[0]);
-    assert_true(s[0] - s[1] >= -1e-31Q * s[0] && s[1] - fabsq(s[2]) >= -1e-31Q * s[0]);
+    assert_true(s[0] - s[1] >= -1e-31Q * s[0] && s[1] - magnitude(s[2]) >= -1e-31Q * s[0]);
   }
   cb_frame_set_free(&set);
 }

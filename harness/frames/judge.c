@@ -2,7 +2,6 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <math.h>
-#include <quadmath.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +11,9 @@
 #include "harness/measure/timer.h"
 
 typedef __float128 Q;
+
+static Q magnitude(Q a) { return a < 0 ? -a : a; }
+static Q larger(Q a, Q b) { return a > b ? a : b; }
 
 /* ---- one answer -------------------------------------------------------------------------- */
 
@@ -51,8 +53,8 @@ static double excess_qr(const struct cb_frame_input *input, const Q *R) {
   Q F[9], T[9], worst = 0;
   for (int i = 0; i < 9; i++) F[i] = input->F[i];
   product_tn(R, F, T);
-  if (column[0] > 0) worst = fmaxq(fmaxq(fabsq(T[3]), fabsq(T[6])), -T[0]) / column[0];
-  if (column[1] > 0) worst = fmaxq(worst, fmaxq(fabsq(T[7]), -T[4]) / column[1]);
+  if (column[0] > 0) worst = larger(larger(magnitude(T[3]), magnitude(T[6])), -T[0]) / column[0];
+  if (column[1] > 0) worst = larger(worst, larger(magnitude(T[7]), -T[4]) / column[1]);
   return (double)worst;
 }
 
@@ -72,12 +74,12 @@ static void judge(const struct cb_frame_set *set, const struct cb_frame_input *i
     skew += (T[i] - (i % 4 == 0)) * (T[i] - (i % 4 == 0));
     far += (R[i] - exact->R[i]) * (R[i] - exact->R[i]);
   }
-  most(&r->orthogonality, (double)sqrtq(skew) / u);
-  most(&r->determinant, (double)fabsq(determinant(R) - 1) / u);
+  most(&r->orthogonality, sqrt((double)skew) / u);
+  most(&r->determinant, (double)magnitude(determinant(R) - 1) / u);
   most(&r->excess, (set->kind == CB_FRAME_QR ? excess_qr : excess_polar)(input, R) / u);
   if (!input->unique) return;
-  most(&r->error, (double)sqrtq(far) / (u * exact->condition));
-  most(&r->degrees, degrees((double)sqrtq(far)));
+  most(&r->error, sqrt((double)far) / (u * exact->condition));
+  most(&r->degrees, degrees(sqrt((double)far)));
 }
 
 /* ---- time ---------------------------------------------------------------------------------- */
