@@ -12,6 +12,7 @@
 
 #include "harness/recovery/recovery.h"
 #include "harness/verify/claim.h"
+#include "harness/verify/probe.h"
 #include "reference/oracles.h"
 #include "tests/process.h"
 
@@ -171,6 +172,50 @@ static void what_flies_apart_is_named(void **state) {
   cb_recovery_body_free(&body);
 }
 
+/* F = t diag(1, 1, -1) in the frame: with updated B the force along t is
+ * (3 lambda + 2 mu) t^2 (t - 3) V0, outwards, so that beyond t = 3 it never comes back. */
+static void updated_B_drives_large_inverted_elements_apart(void **state) {
+  (void)state;
+  const struct {
+    double t;
+    const char *variant, *outcome;
+  } cases[] = {{1, "qr-updated/ebe/f64", "recovered"},
+               {4, "qr-updated/ebe/f64", "exploded"},
+               {4, "qr-precomputed/ebe/f64", "recovered"},
+               {4, "qr-exact/ebe/f64", "recovered"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct cb_recovery_body body = make("centre");
+    for (int k = 0; k < 12; k++) body.at.x[k] *= cases[i].t;
+    const struct cb_recovery r = run(&body, cases[i].variant);
+    if (strcmp(cb_recovery_outcome(&r), cases[i].outcome) != 0)
+      fail_msg("%s, t = %g: %s", cases[i].variant, cases[i].t, cb_recovery_outcome(&r));
+    cb_recovery_body_free(&body);
+  }
+}
+
+/* The same of the force itself, at the shape: its work along t, on either side of 3. */
+static void the_force_along_t_is_as_derived(void **state) {
+  (void)state;
+  struct cb_recovery_body body = make("centre");
+  const struct cb_mesh *mesh = &body.at.mesh;
+  const double young = body.at.material.young, nu = body.at.material.poisson;
+  const double lambda = young * nu / ((1 + nu) * (1 - 2 * nu)), mu = young / (2 * (1 + nu));
+  const double volume = fabs(cb_mesh_six_volumes(mesh, 0)) / 6;
+  struct cb_probe probe;
+  assert_int_equal(
+      cb_probe_open(cb_variant_find("qr-updated/ebe/f64"), mesh, &body.at.material, &probe), CB_OK);
+  for (double t = 0.5; t < 6; t += 0.5) {
+    double x[12], f[12], along = 0;
+    for (int k = 0; k < 12; k++) x[k] = -t * mesh->X[k];
+    cb_probe_force(&probe, x, f);
+    for (int k = 0; k < 12; k++) along -= mesh->X[k] * f[k];
+    const double derived = (3 * lambda + 2 * mu) * t * t * (t - 3) * volume;
+    assert_true(fabs(along - derived) <= 1e-12 * t * t * (t + 3) * (3 * lambda + 2 * mu) * volume);
+  }
+  cb_probe_close(&probe);
+  cb_recovery_body_free(&body);
+}
+
 /* ---- the verb -----------------------------------------------------------------------------------
  */
 
@@ -219,6 +264,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test(a_rotation_brings_it_back),
       cmocka_unit_test(what_is_not_finite_is_named),
       cmocka_unit_test(what_flies_apart_is_named),
+      cmocka_unit_test(updated_B_drives_large_inverted_elements_apart),
+      cmocka_unit_test(the_force_along_t_is_as_derived),
       cmocka_unit_test(the_verb_prints_and_writes),
       cmocka_unit_test(the_claim_about_vertices_has_a_verdict),
   };
