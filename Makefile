@@ -51,6 +51,8 @@ OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 # Libraries that `corobench frames --check` is tried on, some of them broken on purpose.
 LIBRARIES := $(patsubst tests/frames/%.c,$(BUILD)/tests/frames/%.so,$(wildcard tests/frames/*.c))
+# Scenes that the program carries with it.
+$(BUILD)/harness/verify/claims_scenes.o: scenes/rabbit-crush.json scenes/liver-yank.json
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
@@ -95,6 +97,13 @@ recovery: all ## which models come back from inverted and collapsed shapes, draw
 	@$(BUILD)/corobench recovery --output results/latest
 	@plots/draw.sh results/latest
 
+films: all ## the scenes of figures 5 and 6: how every model ends, a strip and an animation
+	@for scene in rabbit-crush liver-yank; do \
+	  $(BUILD)/corobench run scenes/$$scene.json --variant polar-exact/ebe/f64 --variant '*/ebe/f64' \
+	    --output results/latest/films || exit; \
+	done
+	@plots/draw.sh results/latest/films
+
 RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
 plots: | $(FIRST) ## draw the figures again from stored results, without measuring (RESULTS=DIR)
 	@plots/draw.sh $(RESULTS)
@@ -137,7 +146,7 @@ $(BUILD)/tests/frames/%.so: tests/frames/%.c tests/frames/jacobi.h $(BUILD)/flag
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench truth trade recovery plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races verify bench truth trade films recovery plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -150,6 +159,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench truth trade recovery plots help clean always
+.PHONY: all programs setup test sanitize races verify bench truth trade films recovery plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

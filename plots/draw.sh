@@ -10,7 +10,8 @@ if ! command -v gnuplot >/dev/null; then
   exit 2
 fi
 if [ ! -f "$dir/bench.csv" ] && [ ! -f "$dir/figure3.csv" ] &&
-  [ ! -f "$dir/trade.csv" ] && [ ! -f "$dir/tangent.csv" ] && [ ! -f "$dir/recovery.csv" ]; then
+  [ ! -f "$dir/trade.csv" ] && [ ! -f "$dir/tangent.csv" ] && [ ! -f "$dir/recovery.csv" ] &&
+  ! ls "$dir"/*-film.csv >/dev/null 2>&1; then
   echo "plots: there are no results in $dir; 'make bench' measures some" >&2
   exit 2
 fi
@@ -21,8 +22,9 @@ has() { grep -qsE "$2" "$dir/$1"; }
 status=0
 draw() {
   echo "drawing $1"
-  gnuplot -e "results='$dir'" "plots/$1.gp" 2>"$dir/gnuplot.log" || status=2
-  grep -v 'no valid points' "$dir/gnuplot.log" >&2 # a filter that left out all
+  gnuplot -e "results='$dir'; film='${2-}'" "plots/$1.gp" 2>"$dir/gnuplot.log" || status=2
+  # a filter that left out all; what the animation says of itself
+  grep -v -e 'no valid points' -e 'frames in animation sequence' "$dir/gnuplot.log" >&2
   rm -f "$dir/gnuplot.log"
 }
 
@@ -42,5 +44,11 @@ has frame33.csv '^([^,]+,){5}[0-9]' && draw frame33
 has tangent.csv '^[^,]+,[0-9]' && draw tangent
 has recovery.csv '^[^,]+,[^,]+,[0-9]' && draw recovery && draw recovery-time
 has trade.csv '^[^,]+,(model|storage),' && draw trade
-find "$dir" -maxdepth 1 \( -name "*.svg" -o -name "*.png" \) | sort
+for film in "$dir"/*-film.csv; do
+  [ -f "$film" ] || continue
+  name=$(basename "$film" -film.csv)
+  rm -f "$dir/$name.png" "$dir/$name.gif"
+  if [ -f "$dir/$name-faces.txt" ]; then draw film "$name"; fi
+done
+find "$dir" -maxdepth 1 \( -name "*.gif" -o -name "*.svg" -o -name "*.png" \) | sort
 exit $status

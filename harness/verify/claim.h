@@ -36,6 +36,8 @@ cb_claim_fn cb_claim_b_counts, cb_claim_df_counts;
 /* claims_recovery.c: inverted elements, let go */
 cb_claim_fn cb_claim_sign, cb_claim_vertex;
 /* claims_timing.c: on the paper's block */
-cb_claim_fn cb_claim_assembly, cb_claim_qr_speed;
+cb_claim_fn cb_claim_assembly, cb_claim_qr_speed, cb_claim_frames;
+/* claims_scenes.c: the scenes of figures 5 and 6 */
+cb_claim_fn cb_claim_rabbit, cb_claim_liver;
 
 #endif
