@@ -23,6 +23,14 @@
 /* low < a < high; false of what is not a number. */
 INLINE CHOICE within(T a, T low, T high) { return LESS(low, a) & LESS(a, high); }
 
+/* a := b but where m; not in a loop, of which compilers make a copy of memory, and keep
+ * what is in no need of it there. */
+INLINE void choose3(CHOICE m, const T *b, T *a) {
+  a[0] = CHOOSE(m, a[0], b[0]);
+  a[1] = CHOOSE(m, a[1], b[1]);
+  a[2] = CHOOSE(m, a[2], b[2]);
+}
+
 /* A[count] := A by the largest of its magnitudes, denormal ones too; zero stays. */
 INLINE void scale_to_one(int count, T *A) {
   T most = LIT(0);
@@ -100,10 +108,10 @@ RARE void orthogonal_of_any(const T *F, bool reflects, T *Q) {
 /* Q := as above but where usual; F and Q need not be in memory for it. */
 INLINE void repair(CHOICE usual, const T *F, bool reflects, T *Q) {
   if (ALL(usual)) return;
-  T from[9], to[9];
-  for (int i = 0; i < 9; i++) from[i] = F[i];
+  const T from[9] = {F[0], F[1], F[2], F[3], F[4], F[5], F[6], F[7], F[8]};
+  T to[9];
   orthogonal_of_any(from, reflects, to);
-  for (int i = 0; i < 9; i++) Q[i] = CHOOSE(usual, Q[i], to[i]);
+  for (int i = 0; i < 9; i += 3) choose3(usual, to + i, Q + i);
 }
 
 #endif

@@ -79,10 +79,11 @@ RARE void quaternion_of_any(const T *F, T *q) {
 /* But where warm, q := by the full decomposition (a cold guess can be far off after few turns). */
 INLINE void quaternion_start(CHOICE warm, const T *F, T *q) {
   if (ALL(warm)) return;
-  T from[9], start[4];
-  for (int i = 0; i < 9; i++) from[i] = F[i];
+  const T from[9] = {F[0], F[1], F[2], F[3], F[4], F[5], F[6], F[7], F[8]};
+  T start[4];
   quaternion_of_any(from, start);
-  for (int i = 0; i < 4; i++) q[i] = CHOOSE(warm, q[i], start[i]);
+  q[0] = CHOOSE(warm, q[0], start[0]);
+  choose3(warm, start + 1, q + 1);
 }
 
 /* ... where q is all zero. */

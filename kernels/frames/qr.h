@@ -65,12 +65,13 @@ RARE void qr_axes_of_any(const T *e, T *q, T *y) {
 
 /* q[9], y[3] := by that but where usual. */
 INLINE void qr_repair(CHOICE usual, const T *e, T *q, T *y) {
-  if (ALL(usual)) return;
-  T from[9], axes[9], local[3];
-  for (int i = 0; i < 9; i++) from[i] = e[i];
+  if (__builtin_expect(ALL(usual), 1)) return;
+  const T from[9] = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8]};
+  T axes[9], local[3];
   qr_axes_of_any(from, axes, local);
-  for (int i = 0; i < 9; i++) q[i] = CHOOSE(usual, q[i], axes[i]);
-  for (int i = 0; i < 3; i++) y[i] = CHOOSE(usual, y[i], local[i]);
+  choose3(usual, axes, q);
+  choose3(usual, axes + 3, q + 3);
+  choose3(usual, local, y);
 }
 
 /* Are the squares of e_b and of what Gram-Schmidt leaves of e_c neither denormal nor
@@ -97,8 +98,8 @@ INLINE void frame_qr_axes(const T *e, T *R, T *y) {
   inverse = RSQRT(rest);
   y[2] = rest * inverse;
   for (int i = 0; i < 3; i++) q[3 + i] = inverse * r[i];
-  cross3(q, q + 3, q + 6);
   qr_repair(qr_usual(square, rest, y), e, q, y);
+  cross3(q, q + 3, q + 6);
   for (int i = 0; i < 9; i++) R[i] = q[i % 3 * 3 + i / 3];
 }
 
