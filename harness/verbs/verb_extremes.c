@@ -59,6 +59,8 @@ static enum cb_status write_files(const struct cb_extremes *all, const char *dir
   if (!status) status = cb_output_table(directory, "extremes.csv", rows, CB_CSV);
   if (!status) status = cb_output_table(directory, "extremes.json", rows, CB_JSON);
   if (!status) status = cb_output_table(directory, "extremes-map.csv", map, CB_CSV);
+  if (!status && all->steps)
+    status = cb_output_table(directory, "extremes-steps.csv", all->steps, CB_CSV);
   if (!status) status = cb_output_table(directory, "extremes-paths.csv", paths, CB_CSV);
   if (!status) status = cb_environment_footer(directory, "extremes-footer.txt");
   cb_table_free(rows);
