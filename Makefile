@@ -49,6 +49,12 @@ ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(f
 # The slowest first, so that no processor waits for them in the end.
 OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE:%.c=$(BUILD)/%.o)
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+# Fuzzed are the readers of files, one target each, with what they need and no more: the
+# registry, for the names of laws, lists no arithmetic there.
+FUZZERS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
+FUZZED    := $(wildcard harness/error.c harness/nearest.c harness/files/*.c) \
+             $(addprefix harness/scene/,json.c lines.c parts.c scene.c points.c body.c) \
+             harness/bench/bench_scene.c kernels/material.c kernels/registry.c
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
@@ -71,6 +77,14 @@ races: | $(FIRST) ## threads on a larger mesh under the thread sanitizer
 	@$(MAKE) --no-print-directory BUILD=build-races OPT=-O1 SANFLAGS='-fsanitize=thread' \
 	  build-races/tests/test_threads
 	@TSAN_OPTIONS=halt_on_error=1 build-races/tests/test_threads '*_larger_*'
+
+FUZZ_SECONDS = 8
+fuzz: | $(FIRST) ## feed every reader with broken files (clang), FUZZ_SECONDS=8 a reader
+	@$(MAKE) --no-print-directory BUILD=build-fuzz CC=clang OPT=-O1 OPENMP= \
+	  SANFLAGS='-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all' fuzzers
+	@tests/fuzz/run $(FUZZ_SECONDS) $(FUZZERS:$(BUILD)/%=build-fuzz/%)
+
+fuzzers: $(FUZZERS)
 
 verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
 	@$(BUILD)/corobench verify --output results/latest
@@ -123,9 +137,13 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 	@echo 'LINK $@'
 	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
 
+$(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
+	@echo 'LINK $@'
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer $(ARITHMETICS:%=-Wl,--defsym=cb_arithmetic_%=0) -o $@ $^ $(LDLIBS)
+
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench truth trade plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races fuzz verify bench truth trade plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -138,6 +156,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench truth trade plots help clean always
+.PHONY: all programs setup test sanitize races fuzz fuzzers verify bench truth trade plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
