@@ -58,7 +58,10 @@ enum cb_status cb_json_open(const char *path, struct cb_json *json) {
   *json = (struct cb_json){.path = path};
   enum cb_status status = read_text(path, &json->text);
   if (status) return status;
+  errno = 0;
   json->root = json_loads(json->text, JSON_REJECT_DUPLICATES, &error);
+  /* Jansson would call it a syntax error. */
+  if (!json->root && errno == ENOMEM) return cb_fail_memory("the scene file");
   if (!json->root)
     return cb_fail(CB_INPUT, "%s:%d: %s; a scene is a JSON object", path, error.line, error.text);
   if (!json_is_object(json->root)) return cb_json_fail(json, "a scene must be a JSON object");
