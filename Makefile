@@ -44,6 +44,7 @@ ARITH_f32x8   = -DCB_SCALAR=float -DCB_LANES=8 -DCB_SUFFIX=f32x8 $(AVX2)
 ARITH_f64x8   = -DCB_SCALAR=double -DCB_LANES=8 -DCB_SUFFIX=f64x8 $(AVX512)
 ARITH_f32x16  = -DCB_SCALAR=float -DCB_LANES=16 -DCB_SUFFIX=f32x16 $(AVX512)
 
+comma     := ,
 GENERIC   := $(wildcard kernels/models/*.c kernels/storage/*.c kernels/solver/*.c)
 ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(filter-out harness/corobench.c,$(wildcard harness/*.c))
 # The slowest first, so that no processor waits for them in the end.
@@ -55,6 +56,9 @@ FUZZERS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.
 FUZZED    := $(wildcard harness/error.c harness/nearest.c harness/files/*.c) \
              $(addprefix harness/scene/,json.c lines.c parts.c scene.c points.c body.c) \
              harness/bench/bench_scene.c kernels/material.c kernels/registry.c
+# How a test makes allocations fail where the sanitizer has taken the place of malloc already.
+SHORTAGE  := $(if $(findstring address,$(SANFLAGS)),$(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc \
+               reallocarray aligned_alloc free))
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
@@ -136,6 +140,8 @@ $(foreach a,$(ARITHMETICS),$(eval $(call arithmetic_rule,$(a))))
 $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 	@echo 'LINK $@'
 	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
+
+$(BUILD)/tests/test_shortage: private COUNT += $(SHORTAGE)
 
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
 	@echo 'LINK $@'
