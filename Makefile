@@ -55,6 +55,8 @@ TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
 FUZZERS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 FUZZED    := $(wildcard harness/error.c harness/nearest.c harness/files/*.c) \
              $(addprefix harness/scene/,json.c lines.c parts.c scene.c points.c body.c) \
+             $(addprefix harness/measure/,environment.c results.c results_slices.c results_json.c \
+               results_speed.c results_tables.c statistics.c) \
              harness/bench/bench_scene.c kernels/material.c kernels/registry.c
 # How a test makes allocations fail where the sanitizer has taken the place of malloc already.
 SHORTAGE  := $(if $(findstring address,$(SANFLAGS)),$(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc \
