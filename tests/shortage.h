@@ -5,6 +5,7 @@
  * taken it already, they are put before it by the linker (Makefile), which reaches the program
  * itself, and by hooks, which reach jansson and CHOLMOD; leaks are then its business.
  * Spared is what the thread runtime and the loader ask for: they end the program themselves.
+ * What GSL leaves behind is not counted: a matrix without room for its numbers keeps its head.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_SHORTAGE_H
@@ -47,10 +48,10 @@ static struct {
   size_t asked, fails_at; /* allocations so far; the one that fails, from 1; 0: none */
   bool lasts;             /* and all after it */
   size_t failed;
-  struct {
-    uintptr_t low, high;
-  } spared[8];
-  size_t spared_count;
+  struct shortage_code {
+    size_t count;
+    uintptr_t low[8], high[8];
+  } spared, leaky; /* who never fails; who is not asked for what is left */
 } shortage;
 
 /* ---- what is still there ------------------------------------------------------------- */
@@ -93,17 +94,25 @@ static void shortage_forget(const void *block) {
 
 /* ---- allocations ------------------------------------------------------------------------ */
 
-static int shortage_spare(struct dl_phdr_info *info, size_t size, void *context) {
-  static const char *const names[] = {"libgomp", "libomp", "ld-linux", "libtsan"};
+static bool shortage_within(const struct shortage_code *code, const void *caller) {
+  for (size_t i = 0; i < code->count; i++)
+    if ((uintptr_t)caller >= code->low[i] && (uintptr_t)caller < code->high[i]) return true;
+  return false;
+}
+
+static int shortage_find(struct dl_phdr_info *info, size_t size, void *context) {
+  static const char *const spared[] = {"libgomp", "libomp", "ld-linux"};
   (void)size, (void)context;
-  bool spared = false;
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    spared |= strstr(info->dlpi_name, names[i]) != NULL;
-  for (int i = 0; spared && i < info->dlpi_phnum && shortage.spared_count < 8; i++) {
+  struct shortage_code *code = NULL;
+  for (size_t i = 0; i < sizeof spared / sizeof *spared; i++)
+    if (strstr(info->dlpi_name, spared[i])) code = &shortage.spared;
+  if (strstr(info->dlpi_name, "libgsl.")) code = &shortage.leaky;
+  for (int i = 0; code && i < info->dlpi_phnum && code->count < 8; i++) {
     const ElfW(Phdr) *part = &info->dlpi_phdr[i];
     if (part->p_type != PT_LOAD || !(part->p_flags & PF_X)) continue;
-    shortage.spared[shortage.spared_count].low = info->dlpi_addr + part->p_vaddr;
-    shortage.spared[shortage.spared_count++].high = info->dlpi_addr + part->p_vaddr + part->p_memsz;
+    code->low[code->count] = info->dlpi_addr + part->p_vaddr;
+    code->high[code->count] = code->low[code->count] + part->p_memsz;
+    code->count++;
   }
   return 0;
 }
@@ -111,9 +120,7 @@ static int shortage_spare(struct dl_phdr_info *info, size_t size, void *context)
 /* Does this one fail? It is counted. */
 static bool shortage_strikes(const void *caller) {
   if (!shortage_armed) return false;
-  for (size_t i = 0; i < shortage.spared_count; i++)
-    if ((uintptr_t)caller >= shortage.spared[i].low && (uintptr_t)caller < shortage.spared[i].high)
-      return false;
+  if (shortage_within(&shortage.spared, caller)) return false;
   const size_t n = ++shortage.asked;
   if (!shortage.fails_at || n < shortage.fails_at || (n > shortage.fails_at && !shortage.lasts))
     return false;
@@ -122,47 +129,49 @@ static bool shortage_strikes(const void *caller) {
   return true;
 }
 
-static void *shortage_take(void *block) {
-  if (shortage_armed && block) shortage_remember(block);
+static void *shortage_take(void *block, const void *caller) {
+  if (shortage_armed && block && !shortage_within(&shortage.leaky, caller))
+    shortage_remember(block);
   return block;
 }
 
 void *OURS(malloc)(size_t bytes) {
-  return shortage_strikes(__builtin_return_address(0)) ? NULL
-                                                       : shortage_take(THEIRS(malloc)(bytes));
+  const void *caller = __builtin_return_address(0);
+  return shortage_strikes(caller) ? NULL : shortage_take(THEIRS(malloc)(bytes), caller);
 }
 
 void *OURS(calloc)(size_t n, size_t size) {
-  return shortage_strikes(__builtin_return_address(0)) ? NULL
-                                                       : shortage_take(THEIRS(calloc)(n, size));
+  const void *caller = __builtin_return_address(0);
+  return shortage_strikes(caller) ? NULL : shortage_take(THEIRS(calloc)(n, size), caller);
 }
 
-static void *shortage_realloc(void *old, size_t bytes) {
+static void *shortage_realloc(void *old, size_t bytes, const void *caller) {
+  if (shortage_strikes(caller)) return NULL;
   if (shortage_armed && old) shortage_forget(old);
   void *block = THEIRS(realloc)(old, bytes);
-  shortage_take(block ? block : bytes ? old : NULL);
+  shortage_take(block ? block : bytes ? old : NULL, caller);
   return block;
 }
 
 void *OURS(realloc)(void *old, size_t bytes) {
-  return shortage_strikes(__builtin_return_address(0)) ? NULL : shortage_realloc(old, bytes);
+  return shortage_realloc(old, bytes, __builtin_return_address(0));
 }
 
 void *OURS(reallocarray)(void *old, size_t n, size_t size) {
   size_t bytes;
-  if (__builtin_mul_overflow(n, size, &bytes)) {
-    errno = ENOMEM;
-    return NULL;
-  }
-  return shortage_strikes(__builtin_return_address(0)) ? NULL : shortage_realloc(old, bytes);
+  if (!__builtin_mul_overflow(n, size, &bytes))
+    return shortage_realloc(old, bytes, __builtin_return_address(0));
+  errno = ENOMEM;
+  return NULL;
 }
 
 void *OURS(aligned_alloc)(size_t alignment, size_t bytes) {
-  if (shortage_strikes(__builtin_return_address(0))) return NULL;
+  const void *caller = __builtin_return_address(0);
+  if (shortage_strikes(caller)) return NULL;
 #ifdef __SANITIZE_ADDRESS__
-  return shortage_take(__real_aligned_alloc(alignment, bytes));
+  return shortage_take(__real_aligned_alloc(alignment, bytes), caller);
 #else
-  return shortage_take(__libc_memalign(alignment, bytes));
+  return shortage_take(__libc_memalign(alignment, bytes), caller);
 #endif
 }
 
@@ -175,7 +184,7 @@ void OURS(free)(void *block) {
 
 /* Once, before the first workload. */
 static void shortage_begin(void) {
-  dl_iterate_phdr(shortage_spare, NULL);
+  dl_iterate_phdr(shortage_find, NULL);
 #ifdef __SANITIZE_ADDRESS__
   json_set_alloc_funcs(OURS(malloc), OURS(free));
   SuiteSparse_config.malloc_func = OURS(malloc);

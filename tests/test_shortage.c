@@ -20,15 +20,15 @@
 
 #define CORPUS "tests/fuzz/corpus/"
 
-/* Every allocation of a short work; of a long one the first, and then as many at equal
- * distances. */
+/* Every allocation of a short work; of a long one the first, and then some at equal distances. */
 enum { FIRST = 300, LATER = 60 };
 
 struct work {
   const char *name;
   enum cb_status (*run)(void *context);
   void *context;
-  bool silent; /* the kernels return a status and record no sentence */
+  bool silent;         /* the kernels return a status and record no sentence */
+  size_t first, later; /* 0: FIRST, LATER */
 };
 
 static size_t injected, harmless;
@@ -60,8 +60,9 @@ static void starve(const struct work *w) {
   const size_t all = shortage.asked;
   if (all == 0 || shortage_live_count)
     fail_msg("%s: %zu allocations, %zu blocks are left", w->name, all, shortage_live_count);
-  const size_t stride = all > FIRST + LATER ? (all - FIRST) / LATER : 1;
-  for (size_t n = 1; n <= all; n += n <= FIRST ? 1 : stride)
+  const size_t first = w->first ? w->first : FIRST, later = w->later ? w->later : LATER;
+  const size_t stride = all > first + later ? (all - first) / later : 1;
+  for (size_t n = 1; n <= all; n += n <= first ? 1 : stride)
     for (int lasts = 0; lasts < 2; lasts++) {
       const enum cb_status status = run_short(w, n, lasts);
       if (!shortage.failed) fail_msg("%s: allocation %zu of %zu is not asked for", w->name, n, all);
@@ -92,10 +93,13 @@ static void readers(void **state) {
   (void)state;
   char path[256];
   snprintf(path, sizeof path, "%s", small_mesh());
-  starve(&(struct work){"TetGen", read_mesh, path, false});
-  starve(&(struct work){"Gmsh 2.2", read_mesh, CORPUS "mesh_gmsh/version2.msh", false});
-  starve(&(struct work){"Gmsh 4.1", read_mesh, CORPUS "mesh_gmsh/version4.msh", false});
-  starve(&(struct work){"positions", read_positions, CORPUS "positions/from-zero.csv", false});
+  starve(&(struct work){.name = "TetGen", .run = read_mesh, .context = path});
+  starve(&(struct work){
+      .name = "Gmsh 2.2", .run = read_mesh, .context = CORPUS "mesh_gmsh/version2.msh"});
+  starve(&(struct work){
+      .name = "Gmsh 4.1", .run = read_mesh, .context = CORPUS "mesh_gmsh/version4.msh"});
+  starve(&(struct work){
+      .name = "positions", .run = read_positions, .context = CORPUS "positions/from-zero.csv"});
 }
 
 /* ---- scenes ------------------------------------------------------------------------------ */
@@ -115,7 +119,7 @@ static void scenes(void **state) {
                                       CORPUS "scene/beam.json",  CORPUS "scene/liver.json",
                                       "scenes/block.json",       "scenes/twisted-bar.json"};
   for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
-    starve(&(struct work){paths[i], make_body, (void *)paths[i], false});
+    starve(&(struct work){.name = paths[i], .run = make_body, .context = (void *)paths[i]});
 }
 
 /* ---- operators ----------------------------------------------------------------------------- */
@@ -164,7 +168,10 @@ static void operators(void **state) {
          threads++) {
       char name[96];
       cb_variant_name(v, name);
-      starve(&(struct work){name, make_stepper, &(struct ready){v, &mesh, threads}, true});
+      starve(&(struct work){.name = name,
+                            .run = make_stepper,
+                            .context = &(struct ready){v, &mesh, threads},
+                            .silent = true});
     }
   cb_mesh_free(&mesh);
 }
@@ -194,8 +201,10 @@ static void simulations(void **state) {
                                  .step = scene.step};
   const struct cb_trial direct = {
       .variant = cb_variant_find("polar-exact/bcsr/f64"), .threads = 1, .step = scene.step};
-  starve(&(struct work){"iterated", simulate, &(struct simulation){&body, cheap}, false});
-  starve(&(struct work){"direct", simulate, &(struct simulation){&body, direct}, false});
+  starve(&(struct work){
+      .name = "iterated", .run = simulate, .context = &(struct simulation){&body, cheap}});
+  starve(&(struct work){
+      .name = "direct", .run = simulate, .context = &(struct simulation){&body, direct}});
   cb_body_free(&body);
 }
 
@@ -228,10 +237,62 @@ static void outputs(void **state) {
   (void)state;
   struct cb_mesh mesh;
   for (enum cb_format format = CB_TABLE; format <= CB_JSON; format++)
-    starve(&(struct work){"a table", write_table, &format, false});
+    starve(&(struct work){.name = "a table", .run = write_table, .context = &format});
   assert_int_equal(cb_mesh_grid(2, 2, 2, 0.1, &mesh), CB_OK);
-  starve(&(struct work){"VTK", write_vtk, &mesh, false});
+  starve(&(struct work){.name = "VTK", .run = write_vtk, .context = &mesh});
   cb_mesh_free(&mesh);
+}
+
+/* ---- verbs -------------------------------------------------------------------------------------
+ */
+
+struct command {
+  const struct cb_verb *verb;
+  const char *words[12];
+};
+
+static int nowhere, own[2]; /* /dev/null; what the test itself writes to */
+
+static void send(int out, int err) {
+  fflush(stdout);
+  dup2(out, 1);
+  dup2(err, 2);
+}
+
+/* As main does, in this process, unheard. */
+static enum cb_status run_verb(void *context) {
+  const struct command *c = context;
+  char *argv[16] = {(char *)"corobench"};
+  int argc = 1;
+  for (; c->words[argc - 1]; argc++) argv[argc] = (char *)c->words[argc - 1];
+  argv[argc++] = (char *)"--output";
+  argv[argc++] = temporary;
+  send(nowhere, nowhere);
+  const enum cb_status status = c->verb->run(argc, argv);
+  send(own[0], own[1]);
+  return status;
+}
+
+/* Those that simulate or measure for long have their allocations in the works above. */
+static void verbs(void **state) {
+  (void)state;
+  static const struct command commands[] = {
+      {&cb_verb_bench,
+       {"--quick", "--seconds", "1", "--figure", "memory", "--variant", "qr-updated/ebe*/f64"}},
+      {&cb_verb_verify,
+       {"--laws", "--mesh", CORPUS "mesh_gmsh/version2.msh", "--variant", "qr-exact"}},
+      {&cb_verb_trade,
+       {CORPUS "scene/loads.json", "--quick", "--variant", "qr-updated/ebe-cluster/f64"}},
+      {&cb_verb_run, {CORPUS "scene/loads.json"}}};
+  own[0] = dup(1), own[1] = dup(2), nowhere = open("/dev/null", O_WRONLY);
+  assert_true(own[0] >= 0 && own[1] >= 0 && nowhere >= 0);
+  for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+    starve(&(struct work){.name = commands[i].verb->name,
+                          .run = run_verb,
+                          .context = (void *)&commands[i],
+                          .first = 40,
+                          .later = 20});
+  close(own[0]), close(own[1]), close(nowhere);
 }
 
 static int end(void **state) {
@@ -244,8 +305,8 @@ int main(int argc, char **argv) {
   if (argc > 1) cmocka_set_test_filter(argv[1]);
   shortage_begin();
   gsl_set_error_handler_off();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(readers), cmocka_unit_test(scenes),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(readers),   cmocka_unit_test(scenes),
                                      cmocka_unit_test(operators), cmocka_unit_test(simulations),
-                                     cmocka_unit_test(outputs)};
+                                     cmocka_unit_test(outputs),   cmocka_unit_test(verbs)};
   return cmocka_run_group_tests(tests, temporary_make, end);
 }
