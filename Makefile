@@ -147,7 +147,7 @@ $(BUILD)/tests/test_shortage: private COUNT += $(SHORTAGE)
 
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
 	@echo 'LINK $@'
-	@$(CC) $(CFLAGS) -fsanitize=fuzzer $(ARITHMETICS:%=-Wl,--defsym=cb_arithmetic_%=0) -o $@ $^ $(LDLIBS)
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -Wl,--wrap=cb_environment_read $(ARITHMETICS:%=-Wl,--defsym=cb_arithmetic_%=0) -o $@ $^ $(LDLIBS)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=

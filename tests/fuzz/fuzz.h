@@ -16,8 +16,16 @@
 #include <unistd.h>
 
 #include "harness/error.h"
+#include "harness/measure/environment.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* Stands for the function without the prefix (Makefile): the machine need not be asked for its
+ * properties a thousand times a second. */
+void __wrap_cb_environment_read(struct cb_environment *e);
+void __wrap_cb_environment_read(struct cb_environment *e) {
+  *e = (struct cb_environment){.cpu = "fuzzed", .cores = 1};
+}
 
 static inline void fuzz_require(int kept, const char *promise) {
   if (kept) return;
