@@ -74,23 +74,36 @@ setup: ## install the missing Debian packages (as root or through sudo)
 test: programs ## build and run all tests; the last line is the total
 	@tests/run $(TESTS)
 
-sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
-	@$(MAKE) --no-print-directory BUILD=build-sanitize OPT=-O1 \
-	  SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' test
+# Builds of their own, for what looks for faults.
+SANITIZED = --no-print-directory BUILD=build-sanitize OPT=-O1 \
+              SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all'
+RACING    = --no-print-directory BUILD=build-races OPT=-O1 SANFLAGS='-fsanitize=thread'
+FUZZING   = --no-print-directory BUILD=build-fuzz OPT=-O1 CC=clang OPENMP= \
+              SANFLAGS='-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all'
 
+sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
+	@$(MAKE) $(SANITIZED) test
+
+RACERS = build-races/tests/test_threads build-races/tests/test_machine
 # Races are looked for where threads share most: the slow sanitizer gets no more.
 races: | $(FIRST) ## threads on a larger mesh under the thread sanitizer
-	@$(MAKE) --no-print-directory BUILD=build-races OPT=-O1 SANFLAGS='-fsanitize=thread' \
-	  build-races/tests/test_threads
+	@$(MAKE) $(RACING) $(RACERS)
 	@TSAN_OPTIONS=halt_on_error=1 build-races/tests/test_threads '*_larger_*'
+	@TSAN_OPTIONS=halt_on_error=1 build-races/tests/test_machine test_crew
 
 FUZZ_SECONDS = 8
 fuzz: | $(FIRST) ## feed every reader with broken files (clang), FUZZ_SECONDS=8 a reader
-	@$(MAKE) --no-print-directory BUILD=build-fuzz CC=clang OPT=-O1 OPENMP= \
-	  SANFLAGS='-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all' fuzzers
+	@$(MAKE) $(FUZZING) fuzzers
 	@tests/fuzz/run $(FUZZ_SECONDS) $(FUZZERS:$(BUILD)/%=build-fuzz/%)
 
 fuzzers: $(FUZZERS)
+
+robustness: programs ## all that may go wrong, tried for under 4 minutes (builds apart): one table
+	@$(MAKE) $(SANITIZED) build-sanitize/tests/test_mutations build-sanitize/tests/test_shortage
+	@$(MAKE) $(RACING) $(RACERS)
+	@$(MAKE) $(FUZZING) fuzzers
+	@tests/robustness $(FUZZ_SECONDS) $(BUILD) build-sanitize build-races \
+	  $(FUZZERS:$(BUILD)/%=build-fuzz/%)
 
 verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
 	@$(BUILD)/corobench verify --output results/latest
@@ -115,7 +128,7 @@ plots: | $(FIRST) ## draw the figures again from stored results, without measuri
 
 help: ## this list
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
-	  while IFS='|' read -r target text; do printf '  make %-9s %s\n' "$$target" "$$text"; done
+	  while IFS='|' read -r target text; do printf '  make %-10s %s\n' "$$target" "$$text"; done
 
 clean: ## remove everything built
 	rm -rf build build-*
@@ -151,7 +164,7 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
 
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races fuzz verify bench truth trade plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races fuzz robustness verify bench truth trade plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -164,6 +177,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races fuzz fuzzers verify bench truth trade plots help clean always
+.PHONY: all programs setup test sanitize races fuzz fuzzers robustness verify bench truth trade plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
