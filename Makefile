@@ -59,8 +59,8 @@ FUZZED    := $(wildcard harness/error.c harness/nearest.c harness/files/*.c) \
                results_speed.c results_tables.c statistics.c) \
              harness/bench/bench_scene.c kernels/material.c kernels/registry.c
 # How a test makes allocations fail where the sanitizer has taken the place of malloc already.
-SHORTAGE  := $(if $(findstring address,$(SANFLAGS)),$(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc \
-               reallocarray aligned_alloc free))
+SHORTAGE  := $(if $(findstring address,$(SANFLAGS)),-lsuitesparseconfig \
+               $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc reallocarray aligned_alloc free))
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 

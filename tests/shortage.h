@@ -23,10 +23,12 @@
 #include <SuiteSparse_config.h>
 #define OURS(name) __wrap_##name
 #define THEIRS(name) __real_##name
+static const bool shortage_reaches_libc = false;
 void *__real_aligned_alloc(size_t alignment, size_t bytes);
 #else
 #define OURS(name) name
 #define THEIRS(name) __libc_##name
+static const bool shortage_reaches_libc = true;
 void *__libc_memalign(size_t alignment, size_t bytes);
 #endif
 void *THEIRS(malloc)(size_t bytes);

@@ -58,6 +58,7 @@ static void starve(const struct work *w) {
   run_short(w, 0, false); /* what libraries make once is made */
   assert_int_equal(run_short(w, 0, false), CB_OK);
   const size_t all = shortage.asked;
+  if (all == 0 && !shortage_reaches_libc) return; /* what it asks for, others ask for it */
   if (all == 0 || shortage_live_count)
     fail_msg("%s: %zu allocations, %zu blocks are left", w->name, all, shortage_live_count);
   const size_t first = w->first ? w->first : FIRST, later = w->later ? w->later : LATER;
