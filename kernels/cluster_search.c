@@ -1,6 +1,7 @@
 /* cluster_search.c - clusters grown one after the other from where the fewest free
  * tetrahedra are left, the densest first; those of rare shapes are dissolved and
- * their tetrahedra searched again for the frequent shapes.
+ * their tetrahedra searched again for the frequent shapes: those that fill a pack,
+ * then, in a large mesh, two.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/cluster_search.h"
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BUCKETS = 256, DENSE = 8 };
+enum { BUCKETS = 256, DENSE = 8, MANY = 128 };
 static const uint32_t NONE = UINT32_MAX;
 static const uint8_t UNTRIED = 255;
 
@@ -215,6 +216,10 @@ enum cb_status cb_search_create(const struct cb_mesh *mesh, size_t lanes, struct
   if (!status) status = search_all(&w);
   if (!status) status = dissolve(&w, lanes);
   if (!status) status = search_all(&w);
+  if (!status && made.clusters >= MANY * lanes) { /* else a shape of few may be all there is */
+    status = dissolve(&w, 2 * lanes);
+    if (!status) status = search_all(&w);
+  }
   work_free(&w);
   if (status) {
     cb_search_free(&made);

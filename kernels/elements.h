@@ -20,8 +20,8 @@
  * and f = -(stress/mu) w_j sqrt(mu W / c). For an orthotropic material mu is
  * its G_xy and the bracket is D : sym(H) / mu. */
 enum cb_policy {
-  POLICY_PRECOMPUTED,   /* w_j = R grad0_j: rest gradients, turned */
-  POLICY_UPDATED,       /* w_j = cofactors of the current edges / (6 V0) */
+  POLICY_PRECOMPUTED,    /* w_j = R grad0_j: rest gradients, turned */
+  POLICY_UPDATED,        /* w_j = cofactors of the current edges / (6 V0) */
   POLICY_UPDATED_VOLUME, /* w_j = cofactors of the current edges / (6 V) */
   POLICY_LAZY            /* updated in the frame's axes when the stretch has moved, else kept
                             there; stored as POLICY_UPDATED is */
@@ -39,13 +39,13 @@ enum {
   REST_G = 0,      /* 9: rows grad0 of N_b, N_c, N_d in rest axes; 1/m, or scaled
                       by sqrt(c mu W) for POLICY_PRECOMPUTED */
   REST_EDGE = 9,   /* scale of the edges: precomputed 1/sqrt(c mu W), so that
-                      F = sum (REST_EDGE e_j) (x) REST_G_j; else 1, not read */
-  REST_W = 10,     /* updated: sqrt(c mu W)/|6 V0| (its root where the edges are
-                      scaled instead); updated-volume: sqrt(c mu W) */
-  REST_FORCE = 11, /* sqrt(mu W / c), with the sign of V0 for updated B */
-  REST_ISOTROPIC = 12,
-  REST_D = 12, /* 21: D/mu in rest axes, upper triangle by rows; orthotropic */
-  REST_ORTHOTROPIC = 33
+                      F = sum (REST_EDGE e_j) (x) REST_G_j */
+  REST_W = 9,      /* in the same place, updated: sqrt(c mu W)/|6 V0| (its root where
+                      the edges are scaled instead); updated-volume: sqrt(c mu W) */
+  REST_FORCE = 10, /* sqrt(mu W / c), with the sign of V0 for updated B */
+  REST_ISOTROPIC = 11,
+  REST_D = 11, /* 21: D/mu in rest axes, upper triangle by rows; orthotropic */
+  REST_ORTHOTROPIC = 32
   /* ebe-paper with precomputed B appends B0 (12 numbers, or 9 for qr) */
 };
 

@@ -116,6 +116,11 @@ struct cb_form {
   uint16_t state_numbers; /* stored per element between update and product */
 };
 
+/* R[9*count] := frames of the deformation gradients F[9*count], row-major, both of the
+ * arithmetic's scalar: those of elements that at rest have the unit vectors as edges.
+ * Warm-started frames start cold for each. R must not overlap F. */
+typedef void cb_frame_fn(size_t count, const void *F, void *R);
+
 /* One model in one arithmetic. `laws[0]` isotropic, `laws[1]` orthotropic:
  * the claims that verify tests. */
 struct cb_model {
@@ -126,6 +131,7 @@ struct cb_model {
   uint8_t knobs;                       /* CB_KNOB_* that cb_operator_tune may turn */
   bool node_frames;                    /* one frame per node (node-warp) */
   bool keeps_rest;                     /* its products read rest data: they are stored */
+  cb_frame_fn *frame;                  /* NULL: its elements have none */
   struct cb_form form[CB_STORAGES][2]; /* [storage][orthotropic] */
 };
 

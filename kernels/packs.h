@@ -1,6 +1,6 @@
 /* packs.h - which elements are worked on together, by whom and when. A pack is
- * `lanes` units of the same shape, one a lane; a unit is a tetrahedron, or a
- * cluster of them (kernels/clusters.h). Every thread has a chunk of packs, in
+ * `lanes` units of the same shape, one a lane; a unit is a tetrahedron, or one or more
+ * clusters of them (kernels/cluster_joins.h). Every thread has a chunk of packs, in
  * three parts:
  *   0  packs with a node that a later thread's chunk has as well,
  *   1  packs whose nodes no other chunk has,
@@ -13,7 +13,19 @@
 #ifndef CB_PACKS_H
 #define CB_PACKS_H
 
-#include "kernels/clusters.h"
+#include "kernels/cluster_joins.h"
+
+/* A tetrahedron of a shape: its vertices as local nodes; where their sums are before it
+ * adds to them: CB_UNIT_NODES, where there is zero, if it is the first that does. In
+ * numbers of nodes, until the storage makes places of them. */
+struct cb_corners {
+  uint16_t vertex[4], sum[4];
+};
+
+struct cb_pack_shape {
+  uint8_t nodes, tets;
+  uint32_t corners; /* those of its tetrahedra begin there */
+};
 
 struct cb_pack {
   uint32_t node; /* its node indices begin at node * lanes */
@@ -38,15 +50,18 @@ struct cb_packs {
   struct cb_chunk *chunk; /* [threads] */
   /* clusters only, else NULL */
   struct cb_pack *pack; /* [packs] */
-  struct cb_template *shape;
-  uint8_t *order; /* [slots][lanes] bits 2j and 2j + 1: which vertex of the shape is the
-                     mesh's own vertex j; NULL: all are the same */
-  size_t bytes;   /* of every array here */
+  struct cb_pack_shape *shape;
+  size_t all_corners;
+  struct cb_corners *corners; /* [all_corners] of all shapes */
+  uint8_t *order;             /* [slots][lanes] bits 2j and 2j + 1: which vertex of the shape is the
+                                 mesh's own vertex j; NULL: all are the same */
+  size_t bytes;               /* of every array here */
 };
 
-/* clustered: units are clusters. CB_MEMORY; CB_INPUT: more than 2^32 numbers. */
+/* clustered: units are clusters; joined: which are joined where that fills packs. CB_MEMORY;
+ * CB_INPUT: more than 2^32 numbers. */
 enum cb_status cb_packs_create(const struct cb_mesh *mesh, size_t lanes, size_t threads,
-                               bool clustered, struct cb_packs **out);
+                               bool clustered, bool joined, struct cb_packs **out);
 /* The models do not depend on the order of vertices: forget the mesh's own. */
 void cb_packs_disorder(struct cb_packs *packs);
 void cb_packs_free(struct cb_packs *packs); /* NULL is allowed */

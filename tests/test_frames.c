@@ -2,6 +2,7 @@
  * decompositions give, to the rounding that F's singular values amplify.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "tests/element.h"
 #include "tests/families.h"
 
 #define CB_SCALAR double
@@ -178,6 +179,52 @@ static void flat_shapes_have_a_frame(void **state) {
   gsl_rng_free(rng);
 }
 
+/* R := the frames that a model offers, through the arithmetic's own numbers. */
+static void frames_of(const struct cb_model *model, const struct cb_arithmetic *a, size_t count,
+                      const double *F, double *R) {
+  float f[9 * 32], r[9 * 32];
+  if (a->scalar_bytes == sizeof(double)) {
+    model->frame(count, F, R);
+    return;
+  }
+  for (size_t i = 0; i < 9 * count; i++) f[i] = (float)F[i];
+  model->frame(count, f, r);
+  for (size_t i = 0; i < 9 * count; i++) R[i] = (double)r[i];
+}
+
+/* What a model offers as its frame, in each arithmetic, whether or not the lanes are
+ * filled: the same as in quad precision, and as the routine itself. */
+static void models_offer_their_frames(void **state) {
+  (void)state;
+  enum { COUNT = 21 };
+  gsl_rng *rng = scene_rng();
+  double F[9 * COUNT], s[3], R[9 * COUNT], direct[9];
+  quad exact[9 * COUNT], from[9 * COUNT];
+  size_t offered = 0;
+  for (size_t n = 0; n < COUNT; n++) random_gradient(rng, TURNED, F + 9 * n, s);
+  for (size_t i = 0; i < 9 * COUNT; i++) from[i] = (float)F[i], F[i] = (float)F[i];
+  for (size_t a = 0; cb_arithmetics[a]; a++) {
+    const struct cb_arithmetic *A = cb_arithmetics[a];
+    for (size_t m = 0; A->models[m] && cb_arithmetic_runs(A); m++) {
+      const struct cb_model *model = A->models[m];
+      if (!model->frame || A->scalar_bytes == sizeof(quad)) continue;
+      const struct cb_model *c = scene_model(scene_counted(), model->name);
+      c->frame(COUNT, from, exact);
+      frames_of(model, A, COUNT, F, R);
+      double far = 0;
+      for (size_t i = 0; i < 9 * COUNT; i++) far = fmax(far, fabs(R[i] - (double)exact[i]));
+      assert_within(model->name, far / A->roundoff, LIMIT);
+      if (strcmp(A->name, "f64") == 0 && strcmp(model->name, "svd-updated") == 0) {
+        frame_svd(F, direct);
+        assert_memory_equal(direct, R, sizeof direct);
+      }
+      offered++;
+    }
+  }
+  assert_true(offered >= 2 * 20); /* f64 and f32 at least */
+  gsl_rng_free(rng);
+}
+
 static bool has_nan(const double *R) {
   for (int i = 0; i < 9; i++)
     if (isnan(R[i])) return true;
@@ -215,6 +262,7 @@ int main(void) {
       cmocka_unit_test(quaternions_and_matrices_agree),
       cmocka_unit_test(qr_is_gram_schmidt),
       cmocka_unit_test(flat_shapes_have_a_frame),
+      cmocka_unit_test(models_offer_their_frames),
       cmocka_unit_test(no_frame_is_nan),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

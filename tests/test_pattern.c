@@ -113,7 +113,7 @@ static struct cb_pattern *pattern_new(const struct cb_mesh *mesh, size_t lanes, 
                                       bool symmetric) {
   struct cb_packs *packs;
   struct cb_pattern *p;
-  assert_int_equal(cb_packs_create(mesh, lanes, threads, false, &packs), CB_OK);
+  assert_int_equal(cb_packs_create(mesh, lanes, threads, false, false, &packs), CB_OK);
   assert_int_equal(cb_pattern_create(mesh, packs, STRIDE, symmetric, &p), CB_OK);
   check_terms(p, mesh, packs);
   cb_packs_free(packs);

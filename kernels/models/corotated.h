@@ -13,6 +13,9 @@
 #include "kernels/models/forms.h"
 #include "kernels/models/strain.h"
 
+/* Numbers that any frame here may remember. */
+enum { FRAME_MEMORY = 32 };
+
 #ifdef FRAME_ROTATION
 /* Orthotropic elements call the frame, isotropic ones have it inlined, which is
  * 10 % faster for the iterative ones: thirty copies would take minutes to build. */
@@ -41,6 +44,30 @@ INLINE void frame_world(const struct cb_elements *E, int policy, int exact, int 
   else
     FRAME_ROTATION(own, F, memory, R);
   STAGE(STAGE_FORCE);
+}
+#endif
+
+#if NO_FRAME
+#define FRAMES NULL
+#else
+#define FRAMES frames
+/* cb_frame_fn. Lanes without a matrix of their own get the last one. */
+static void frames(size_t count, const void *F, void *R) {
+  static const struct cb_elements E; /* untuned */
+  const S *from = F;
+  S *to = R;
+  T rest[REST_ORTHOTROPIC] = {0};
+  rest[REST_G] = rest[REST_G + 4] = rest[REST_G + 8] = rest[REST_EDGE] = LIT(1);
+  for (size_t n = 0; n < count; n += LANES) {
+    T e[9], memory[FRAME_MEMORY] = {0}, Q[9], G[9], L[3];
+    const size_t live = count - n < LANES ? count - n : LANES;
+    for (size_t l = 0; l < LANES; l++)
+      for (size_t i = 0; i < 9; i++)
+        LANE(e[i % 3 * 3 + i / 3], l) = from[9 * (n + (l < live ? l : live - 1)) + i];
+    FRAME_WORLD(&E, POLICY_PRECOMPUTED, 0, 1, rest, e, e, memory, Q, G, L);
+    for (size_t l = 0; l < live; l++)
+      for (size_t i = 0; i < 9; i++) to[9 * (n + l) + i] = LANE(Q[i], l);
+  }
 }
 #endif
 
@@ -449,6 +476,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                                                   .policy = POLICY,                                \
                                                   .axes = AXES,                                    \
                                                   .memory_numbers = MEMORY,                        \
+                                                  .frame = FRAMES,                                 \
                                                   .form = COROTATED_FORMS(ID, POLICY)};
 
 /* A model of isotropic elements for which neither speed in clusters nor assembling is
@@ -464,6 +492,7 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
       .policy = (POLICY) == POLICY_PRECOMPUTED ? POLICY_PRECOMPUTED : POLICY_UPDATED,              \
       .axes = SPARSE ? AXES_EDGES : AXES_WORLD,                                                    \
       .memory_numbers = MEMORY,                                                                    \
+      .frame = FRAMES,                                                                             \
       .knobs = KNOBS,                                                                              \
       .form = {[CB_EBE_PAPER] = COROTATED_TUNED_FORM(ID, POLICY),                                  \
                [CB_EBE] = {FORM_EBE_SHARED(ID, iso, 9), {NULL, NULL, 0}},                          \

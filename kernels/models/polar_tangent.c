@@ -156,6 +156,7 @@ INLINE void tangent_blocks(const struct cb_elements *E, bool clamped, const T *r
       .source = "Chao, Pinkall, Sanan, Schroeder 2010",                                            \
       .laws = {LAWS, 0},                                                                           \
       .policy = POLICY_PRECOMPUTED,                                                                \
+      .frame = FRAMES,                                                                             \
       .form = {[CB_EBE] = {FORM_EBE(ID, iso, 15), {NULL, NULL, 0}},                                \
                [CB_EBE_CLUSTER] = {FORM_CLUSTER(ID, iso, 15), {NULL, NULL, 0}},                    \
                [CB_EBE_MATRIX] = {FORM_MATRIX(ID, iso), {NULL, NULL, 0}},                          \

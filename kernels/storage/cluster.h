@@ -1,7 +1,7 @@
-/* cluster.h - the loops over clusters (kernels/clusters.h): nodes are gathered and
- * scattered once a cluster, and its elements take them from there. Node numbers of
- * a pack of clusters stay in the first cache: u[3 j] to u[3 j + 2] are x, y, z of
- * its local node j.
+/* cluster.h - the loops over units of clusters (kernels/cluster_joins.h): nodes are
+ * gathered and scattered once a unit, and its elements take them from there. Numbers
+ * of a pack's nodes stay in the first cache: u[3 j] to u[3 j + 2] are x, y, z of its
+ * local node j; struct cb_corners has the bytes from u to them.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_CLUSTER_H
@@ -10,7 +10,10 @@
 #include "kernels/storage/drive.h"
 #include "kernels/team.h"
 
-enum { NODE_NUMBERS = 3 * CB_CLUSTER_NODES };
+enum { NODE_NUMBERS = 3 * CB_UNIT_NODES, SUM_NUMBERS = NODE_NUMBERS + 3 };
+/* Sums are half a page away from what is loaded, whose places a small unit then does
+ * not share in the lowest 12 bits: loads would wait for the stores. */
+enum { PAGE = 4096 / sizeof(T), LOADED = (NODE_NUMBERS + PAGE - 1) / PAGE * PAGE };
 
 INLINE void load_cluster(const S *vector, const uint32_t *node, size_t nodes, T *u) {
   for (size_t j = 0; j < nodes; j++) load_nodes(vector, node + j * LANES, u + 3 * j);
@@ -21,20 +24,34 @@ INLINE void add_cluster(S *vector, const uint32_t *node, size_t nodes, size_t li
   for (size_t j = 0; j < nodes; j++) add_to_nodes(vector, node + j * LANES, live, f + 3 * j);
 }
 
-INLINE void local_edges(const T *u, const uint8_t *vertex, T *e) {
-  const T *a = u + 3 * vertex[0];
-  for (int j = 0; j < 3; j++)
-    for (int i = 0; i < 3; i++) e[3 * j + i] = u[3 * vertex[j + 1] + i] - a[i];
+INLINE const T *local_at(const T *u, uint16_t place) {
+  return (const T *)((const char *)u + place);
+}
+
+/* The zero that sums begin with: what is stored binds, and so nothing is cleared. */
+INLINE void prepare_sums(T *sum) {
+  for (size_t i = NODE_NUMBERS; i < SUM_NUMBERS; i++) sum[i] = LIT(0);
+}
+
+INLINE void local_edges(const T *u, const uint16_t *vertex, T *e) {
+  const T *a = local_at(u, vertex[0]);
+  for (int j = 0; j < 3; j++) {
+    const T *b = local_at(u, vertex[j + 1]);
+    for (int i = 0; i < 3; i++) e[3 * j + i] = b[i] - a[i];
+  }
 }
 
 /* sum += f on b, c, d and minus their sum on a. */
-INLINE void add_locally(T *sum, const uint8_t *vertex, const T *f) {
+INLINE void add_locally(T *sum, const struct cb_corners *corners, const T *f) {
   T all[12];
   for (int i = 0; i < 3; i++) all[i] = -(f[i] + f[3 + i] + f[6 + i]);
   for (int i = 0; i < 9; i++) all[3 + i] = f[i];
   STAGE(STAGE_SCATTER);
-  for (int j = 0; j < 4; j++)
-    for (int i = 0; i < 3; i++) sum[3 * vertex[j] + i] = sum[3 * vertex[j] + i] + all[3 * j + i];
+  for (int j = 0; j < 4; j++) {
+    const T *before = local_at(sum, corners->sum[j]);
+    T *at = (T *)local_at(sum, corners->vertex[j]);
+    for (int i = 0; i < 3; i++) at[i] = before[i] + all[3 * j + i];
+  }
 }
 
 /* ---- the vertices' own order -------------------------------------------------- */
@@ -76,13 +93,13 @@ INLINE void gradients_to_shape(const uint8_t *order, T *g) {
 /* Numbers of a pack's nodes. */
 struct cluster_work {
   const struct cb_pack *pack;
-  const struct cb_template *shape;
-  T X[NODE_NUMBERS], x[NODE_NUMBERS], v[NODE_NUMBERS], f[NODE_NUMBERS];
+  const struct cb_pack_shape *shape;
+  _Alignas(64) T X[LOADED], x[LOADED], v[LOADED], gap[PAGE / 2], f[SUM_NUMBERS];
 };
 
 /* Rest data of a slot: kept, or made in made[REST_ISOTROPIC]. */
 INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *X,
-                             const uint8_t *vertex, const uint8_t *order, T *made) {
+                             const uint16_t *vertex, const uint8_t *order, T *made) {
   if (E->rest) return E->rest + slot * E->rest_numbers;
   T e[9], own[9];
   STAGE(STAGE_REST);
@@ -103,19 +120,19 @@ INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *
 INLINE void update_slot(struct cb_elements *E, struct cluster_work *W, size_t i, bool moving, T h,
                         update_pack_fn *update, bool keep_state) {
   const size_t slot = W->pack->slot + i;
-  const uint8_t *vertex = W->shape->vertex[i];
+  const struct cb_corners *corners = E->packs->corners + W->shape->corners + i;
   const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
   T made[REST_ISOTROPIC], e[9], own[9], ev[9], f[9], lost[18];
   T *state = E->state + slot * E->state_numbers;
-  const T *rest = rest_of_slot(E, slot, W->X, vertex, order, made);
+  const T *rest = rest_of_slot(E, slot, W->X, corners->vertex, order, made);
   STAGE(STAGE_FRAME);
-  local_edges(W->x, vertex, e);
+  local_edges(W->x, corners->vertex, e);
   if (order) own_edges(order, e, own);
-  if (moving) local_edges(W->v, vertex, ev);
+  if (moving) local_edges(W->v, corners->vertex, ev);
   if (!keep_state) state[0] = rest[REST_W];
   update(E, rest, e, order ? own : e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
          keep_state ? state : lost, f);
-  add_locally(W->f, vertex, f);
+  add_locally(W->f, corners, f);
 }
 
 /* Keeps REST_W in the state's place, and the positions, if there is room for them
@@ -125,6 +142,7 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
                             S *out, update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct cluster_work W;
+  prepare_sums(W.f);
   if (E->x) {
     size_t first, last;
     cb_team_share(STRIDE * E->nodes, P->threads, thread, &first, &last);
@@ -139,7 +157,6 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
       if (!E->rest) load_cluster(E->X, node, W.shape->nodes, W.X);
       load_cluster(x, node, W.shape->nodes, W.x);
       if (v) load_cluster(v, node, W.shape->nodes, W.v);
-      for (size_t n = 0; n < 3u * W.shape->nodes; n++) W.f[n] = LIT(0);
       for (size_t i = 0; i < W.shape->tets; i++)
         update_slot(E, &W, i, v != NULL, LIT(h), update, E->x == NULL);
       add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
@@ -158,26 +175,28 @@ typedef void slot_product_fn(const struct cb_elements *E, size_t slot, product_p
 INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
                              slot_product_fn *product, bool positions, product_pack_fn *model) {
   const struct cb_packs *P = E->packs;
+  struct {
+    T u[LOADED], x[LOADED], gap[PAGE / 2], sum[SUM_NUMBERS];
+  } W;
+  prepare_sums(W.sum);
   for (int part = 0; part < 3; part++) {
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
       const struct cb_pack *pack = &P->pack[p];
-      const struct cb_template *shape = &P->shape[pack->shape];
+      const struct cb_pack_shape *shape = &P->shape[pack->shape];
       const uint32_t *node = P->node + (size_t)pack->node * LANES;
-      T local[NODE_NUMBERS], x[NODE_NUMBERS], sum[NODE_NUMBERS];
-      load_cluster(u, node, shape->nodes, local);
-      if (positions) load_cluster(E->x, node, shape->nodes, x);
-      for (size_t n = 0; n < 3u * shape->nodes; n++) sum[n] = LIT(0);
+      load_cluster(u, node, shape->nodes, W.u);
+      if (positions) load_cluster(E->x, node, shape->nodes, W.x);
       for (size_t i = 0; i < shape->tets; i++) {
-        const uint8_t *vertex = shape->vertex[i];
+        const struct cb_corners *corners = P->corners + shape->corners + i;
         T e[9], du[9], f[9];
         STAGE(STAGE_PRODUCT);
-        if (positions) local_edges(x, vertex, e);
-        local_edges(local, vertex, du);
+        if (positions) local_edges(W.x, corners->vertex, e);
+        local_edges(W.u, corners->vertex, du);
         product(E, pack->slot + i, model, e, du, f);
-        add_locally(sum, vertex, f);
+        add_locally(W.sum, corners, f);
       }
-      add_cluster(y, node, shape->nodes, pack->live, sum);
+      add_cluster(y, node, shape->nodes, pack->live, W.sum);
     }
     part_end(E, thread, part);
   }

@@ -57,6 +57,11 @@ INLINE T join_nodes(const NODE *n) {
   return n[0];
 #else
   typedef S PAIR __attribute__((vector_size(8 * sizeof(S))));
+#if CB_LANES == 16 && defined __AVX512F__ /* gcc 12 would load all four apart */
+  PAIR first = (PAIR)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)n[0]), (__m128)n[1], 1);
+  PAIR second = (PAIR)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)n[2]), (__m128)n[3], 1);
+  return (T)_mm512_insertf32x8(_mm512_castps256_ps512((__m256)first), (__m256)second, 1);
+#else
   PAIR first = __builtin_shufflevector(n[0], n[1], 0, 1, 2, 3, 4, 5, 6, 7);
 #if CB_LANES == 8
   return first;
@@ -64,6 +69,7 @@ INLINE T join_nodes(const NODE *n) {
   PAIR second = __builtin_shufflevector(n[2], n[3], 0, 1, 2, 3, 4, 5, 6, 7);
   return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14,
                                  15);
+#endif
 #endif
 #endif
 }

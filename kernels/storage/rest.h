@@ -28,7 +28,6 @@ INLINE void rest_of_edges(const struct cb_elements *E, const T *e, T *r) {
   T sign = SELECT(det < LIT(0), LIT(-1), LIT(1)), volume = sign * det;
   T q = RSQRT(volume), rq = E->root * q; /* sqrt(c mu W) / volume */
   T s = rq * volume, scale = sign * q * q;
-  r[REST_EDGE] = LIT(1);
   r[REST_W] = s;
   r[REST_FORCE] = E->inverse_c * s;
   if (E->policy == POLICY_PRECOMPUTED) {

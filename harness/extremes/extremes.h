@@ -1,0 +1,45 @@
+/* extremes.h - what breaks, and where: each model driven to the extremes of shapes,
+ * coordinates, materials, operators and inputs, one sweep a file.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef CB_EXTREMES_H
+#define CB_EXTREMES_H
+
+#include "kernels/kernel.h"
+
+/* One model at one extreme. What a sweep does not measure is NaN and printed as nothing;
+ * what is not finite is said by `finite`. Errors are against quad precision, in units of
+ * the arithmetic's roundoff times how ill-conditioned the exact answer is. */
+struct cb_extreme {
+  const char *sweep;                /* static */
+  char parameter[48];               /* "singular values 1 1e-6 1e-12" */
+  double value;                     /* where on the sweep's axis */
+  const struct cb_variant *variant; /* static */
+  bool finite;                      /* frame, force and product */
+  double frame_error, force_error, product_error;
+  double orthogonality; /* |R^T R - I|, roundoffs */
+  double determinant;   /* of R */
+  double torque;        /* relative, roundoffs */
+  const char *law;      /* the first law that breaks here, or "" */
+  char note[96];        /* "refused: ..."; "" */
+};
+
+struct cb_extremes {
+  unsigned long seed;
+  const struct cb_variant *const *variants; /* NULL-terminated */
+  size_t count, room;
+  struct cb_extreme *row;
+};
+
+/* Append a row. CB_MEMORY, recorded. */
+enum cb_status cb_extremes_add(struct cb_extremes *all, const struct cb_extreme *row);
+
+/* One sweep: appends its rows for each variant, shows progress. CB_MEMORY,
+ * CB_INTERRUPTED. */
+struct cb_sweep {
+  const char *name, *summary;
+  enum cb_status (*run)(struct cb_extremes *all);
+};
+extern const struct cb_sweep *const cb_sweeps[]; /* NULL-terminated; sweeps.c */
+
+#endif
