@@ -42,7 +42,8 @@ static const char *positions(void) {
 static struct process run_in(const char *before, size_t n, const char *directory) {
   char *words = NULL, *line = NULL;
   assert_true(asprintf(&words, commands[n], positions()) > 0);
-  assert_true(asprintf(&line, "%s '%s' %s --output '%s' >/dev/null", before, program, words, directory) > 0);
+  assert_true(asprintf(&line, "%s '%s' %s --output '%s' >/dev/null", before, program, words,
+                       directory) > 0);
   struct process p = process_run((const char *const[]){"sh", "-c", line, NULL}, environ, NULL);
   free(line);
   free(words);
