@@ -29,7 +29,7 @@ static const struct verb BENCH = {"bench",
                                   6,
                                   {"--quick", "--seconds", "1", "--figure", "memory", "--figure",
                                    "4", "--figure", "7", "--variant", "qr-updated/ebe/f64",
-                                   "--threads", "1,2"}};
+                                   "--threads", "1"}};
 static const struct verb TRADE = {"trade",
                                   "trade.csv",
                                   11,
@@ -116,12 +116,13 @@ static char *journal_of(const struct verb *v, const char *directory) {
   return text;
 }
 
-/* From its beginning to its end, killed as often as it takes, at most `kills` times. */
+/* From its beginning to its end, killed as often as it takes, at most `kills` times, each within
+ * half the time of a whole run: a few times on the way. */
 static size_t campaign(const struct verb *v, const char *directory, double longest, size_t kills,
                        gsl_rng *rng) {
   size_t killed = 0;
   char *before = strdup("");
-  while (killed < kills && killed_after(v, directory, longest * gsl_rng_uniform(rng))) {
+  while (killed < kills && killed_after(v, directory, longest / 2 * gsl_rng_uniform(rng))) {
     char *now = journal_of(v, directory);
     killed++;
     if (strncmp(now, before, strlen(before)) != 0)
@@ -217,24 +218,24 @@ static struct process resumed(const char *directory, const char *more, const cha
   return process_run(argv, environ, NULL);
 }
 
-/* The last column of the first row of that figure in bench.csv. */
+/* The last column of the last row of that figure in bench.csv; 0: no row. */
 static char session_of(const char *directory, const char *figure) {
-  char path[512], line[1024] = "";
+  char path[512], line[1024], session = 0;
   snprintf(path, sizeof path, "%s/bench.csv", directory);
   FILE *file = fopen(path, "r");
   assert_non_null(file);
-  while (fgets(line, sizeof line, file) && strncmp(line, figure, strlen(figure)) != 0) {
-  }
+  while (fgets(line, sizeof line, file))
+    if (strncmp(line, figure, strlen(figure)) == 0) session = line[strlen(line) - 2];
   fclose(file);
-  assert_int_equal(strncmp(line, figure, strlen(figure)), 0);
-  return line[strlen(line) - 2];
+  return session;
 }
 
 static void rows_tell_their_session(void **state) {
   (void)state;
   char directory[256];
   snprintf(directory, sizeof directory, "%s", temporary_path("told"));
-  assert_true(WIFSIGNALED(ended_at(directory, 3, SIGKILL)));
+  int tries = 0;
+  while (!WIFSIGNALED(ended_at(directory, 3, SIGKILL))) assert_true(tries++ < 20);
   assert_refused(resumed(directory, "--seconds", "2"), "another options");
   assert_refused(resumed(directory, "--seed", "7"), "seed 7");
   struct process p = resumed(directory, NULL, NULL);
@@ -252,8 +253,11 @@ static void an_interrupt_says_how_to_go_on(void **state) {
   (void)state;
   char directory[256];
   snprintf(directory, sizeof directory, "%s", temporary_path("interrupted"));
-  const int status = ended_at(directory, 2, SIGINT);
-  assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
+  int status, tries = 0; /* a busy machine may let the run end before the signal comes */
+  while (status = ended_at(directory, 2, SIGINT), WEXITSTATUS(status) != 130) {
+    assert_true(tries++ < 20);
+    unlink(temporary_path("interrupted/bench.csv"));
+  }
   char *said = read_text(temporary_path("said"));
   assert_non_null(strstr(said, "interrupted"));
   assert_non_null(strstr(said, "--resume"));

@@ -156,7 +156,7 @@ struct cb_block {
 };
 /* Time the entries whose variants pass the gate for about budget_s and give every
  * entry its rows: one part of the run. No two blocks of a figure may have the same mesh,
- * iterations, first entry and number of entries. */
+ * iterations, first and last entry and number of entries. */
 enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan);
 /* The samples of one job at one iteration count, [samples.rounds], s. */
 const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t count);

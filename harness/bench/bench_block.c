@@ -247,13 +247,15 @@ static enum cb_status run_block(struct cb_bench *b, void *context) {
 }
 
 enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan) {
-  char key[2 * CB_NAME + 128], name[CB_NAME];
-  cb_variant_name(plan->entries[0].variant, name);
+  char key[2 * CB_NAME + 256], first[CB_NAME], last[CB_NAME];
+  const struct cb_entry *begin = plan->entries, *end = begin + plan->entry_count - 1;
+  cb_variant_name(begin->variant, first);
+  cb_variant_name(end->variant, last);
   snprintf(key, sizeof key,
            "figure %s: %zu tetrahedra, %zu nodes, %zu counts of iterations from %zu, %zu entries "
-           "from %s on %zu threads",
+           "from %s on %zu to %s on %zu threads",
            plan->figure, plan->scene->mesh.tets, plan->scene->mesh.nodes, plan->count_count,
-           plan->iterations[0], plan->entry_count, name, plan->entries[0].threads);
+           plan->iterations[0], plan->entry_count, first, begin->threads, last, end->threads);
   const enum cb_status status = cb_bench_part(b, key, run_block, (void *)plan);
   b->done_s += plan->budget_s;
   return status;
