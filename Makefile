@@ -9,7 +9,7 @@ OPENMP  = -fopenmp
 CFLAGS  = -std=gnu11 $(OPT) -g1 -fno-math-errno -ffp-contract=off $(WARN) $(WERROR) $(SANFLAGS) $(OPENMP)
 INCLUDES = -I. -I/usr/include/suitesparse -I/usr/local/include/suitesparse
 CPPFLAGS = $(INCLUDES) -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"'
-LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread
+LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread -ldl
 # The operation counter: every quad-precision call of the counted arithmetic
 # goes through harness/verify/counter.c.
 COUNT   = -Wl,--wrap=__addtf3,--wrap=__subtf3,--wrap=__multf3,--wrap=__divtf3,--wrap=sqrtq
@@ -61,12 +61,16 @@ FUZZED    := $(wildcard harness/error.c harness/nearest.c harness/files/*.c) \
 # How a test makes allocations fail where the sanitizer has taken the place of malloc already.
 SHORTAGE  := $(if $(findstring address,$(SANFLAGS)),-lsuitesparseconfig \
                $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc reallocarray aligned_alloc free))
+# Libraries that `corobench frames --check` is tried on, some of them broken on purpose.
+LIBRARIES := $(patsubst tests/frames/%.c,$(BUILD)/tests/frames/%.so,$(wildcard tests/frames/*.c))
+# Scenes that the program carries with it.
+$(BUILD)/harness/verify/claims_scenes.o: scenes/rabbit-crush.json scenes/liver-yank.json
 # The files that state the commit, compiled anew when it changes.
 DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*.c))
 
 all: $(BUILD)/corobench ## build the program, build/corobench (the default)
 
-programs: all $(TESTS) ## build the program and the tests, run nothing
+programs: all $(TESTS) $(LIBRARIES) ## build the program and the tests, run nothing
 
 setup: ## install the missing Debian packages (as root or through sudo)
 	@CC='$(CC)' INCLUDES='$(INCLUDES)' sh harness/setup.sh $(ALSO)
@@ -117,10 +121,25 @@ truth: all ## hold the models against closed forms and conservation; fails when 
 	@$(BUILD)/corobench truth --output results/latest
 	@plots/draw.sh results/latest
 
+extremes: all ## what breaks, and where, for each model; fails while something does
+	@$(BUILD)/corobench extremes --output results/latest; status=$$?; \
+	  [ $$status -gt 1 ] || plots/draw.sh results/latest || status=2; exit $$status
+
 SCENE = scenes/block.json
 trade: all ## error against time of every setting on a scene (SCENE=FILE), drawn
 	@$(BUILD)/corobench trade $(SCENE) --output results/latest
 	@plots/draw.sh results/latest
+
+recovery: all ## which models come back from inverted and collapsed shapes, drawn
+	@$(BUILD)/corobench recovery --output results/latest
+	@plots/draw.sh results/latest
+
+films: all ## the scenes of figures 5 and 6: how every model ends, a strip and an animation
+	@for scene in rabbit-crush liver-yank; do \
+	  $(BUILD)/corobench run scenes/$$scene.json --variant polar-exact/ebe/f64 --variant '*/ebe/f64' \
+	    --output results/latest/films || exit; \
+	done
+	@plots/draw.sh results/latest/films
 
 RESULTS = $(firstword $(wildcard results/latest results/reference) results/latest)
 plots: | $(FIRST) ## draw the figures again from stored results, without measuring (RESULTS=DIR)
@@ -162,9 +181,15 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
 	@echo 'LINK $@'
 	@$(CC) $(CFLAGS) -fsanitize=fuzzer -Wl,--wrap=cb_environment_read $(ARITHMETICS:%=-Wl,--defsym=cb_arithmetic_%=0) -o $@ $^ $(LDLIBS)
 
+# As somebody else builds his: no sanitizer of ours.
+$(BUILD)/tests/frames/%.so: tests/frames/%.c tests/frames/jacobi.h $(BUILD)/flags
+	@mkdir -p $(@D)
+	@echo 'LINK $@'
+	@$(CC) -std=gnu11 -O2 $(WARN) $(WERROR) -I. -shared -fPIC -o $@ $< -lm
+
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races fuzz robustness verify bench truth trade plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races fuzz robustness verify bench truth extremes trade films recovery plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -177,6 +202,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races fuzz fuzzers robustness verify bench truth trade plots help clean always
+.PHONY: all programs setup test sanitize races fuzz fuzzers robustness verify bench truth extremes trade films recovery plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

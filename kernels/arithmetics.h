@@ -17,6 +17,7 @@ struct cb_element_functions {
   void (*reset)(struct cb_elements *);
   void (*tune)(struct cb_elements *, const struct cb_tuning *);
   size_t (*bytes)(const struct cb_elements *);
+  double (*visits)(const struct cb_elements *);
   const struct cb_pattern *(*pattern)(const struct cb_elements *);
   void (*blocks)(const struct cb_elements *, double *blocks);
 };
@@ -43,6 +44,7 @@ struct cb_step_functions {
   void cb_elements_reset_##A(struct cb_elements *);                                                \
   void cb_elements_tune_##A(struct cb_elements *, const struct cb_tuning *);                       \
   size_t cb_elements_bytes_##A(const struct cb_elements *);                                        \
+  double cb_elements_visits_##A(const struct cb_elements *);                                       \
   const struct cb_pattern *cb_elements_pattern_##A(const struct cb_elements *);                    \
   void cb_elements_blocks_##A(const struct cb_elements *, double *);                               \
   void cb_from_double_##A(size_t, const double *, void *);                                         \

@@ -199,6 +199,8 @@ struct cb_tuning {
 enum cb_status cb_operator_tune(struct cb_operator *op, const struct cb_tuning *tuning);
 /* Bytes really allocated, node vectors not included. */
 size_t cb_operator_bytes(const struct cb_operator *op);
+/* Nodes that an update reads and adds to, per tetrahedron: 4, or fewer in clusters. */
+double cb_operator_visits(const struct cb_operator *op);
 const struct cb_variant *cb_operator_variant(const struct cb_operator *op);
 size_t cb_operator_nodes(const struct cb_operator *op);
 struct cb_team *cb_operator_team(const struct cb_operator *op);

@@ -100,6 +100,10 @@ size_t cb_operator_bytes(const struct cb_operator *op) {
   return op->variant->arithmetic->elements->bytes(op->elements);
 }
 
+double cb_operator_visits(const struct cb_operator *op) {
+  return op->variant->arithmetic->elements->visits(op->elements);
+}
+
 const struct cb_variant *cb_operator_variant(const struct cb_operator *op) { return op->variant; }
 
 size_t cb_operator_nodes(const struct cb_operator *op) { return op->nodes; }

@@ -174,6 +174,7 @@ static void test_roofline(void **state) {
                           .threads = 2,
                           .flops = 100,
                           .bytes = 50,
+                          .visits = 0.75,
                           .time = {1e-5, 1e-5, 2e-5},
                           .peak = 68.6e9,
                           .bandwidth = 20e9,
@@ -188,19 +189,19 @@ static void test_roofline(void **state) {
                       "work,variant,mesh,tetrahedra,threads,flops_per_tetrahedron,"
                       "bytes_per_tetrahedron,time_s_median,time_s_low,time_s_high,flops_per_byte,"
                       "gflops,gb_per_s,level,peak_gflops,level_gb_per_s,attainable_gflops,"
-                      "percent_of_peak,percent_of_attainable,quick");
+                      "percent_of_peak,percent_of_attainable,node_visits_per_tetrahedron,quick");
   read_line("roofline.csv", 1, line);
   assert_int_equal(
       sscanf(line,
              "product,a/ebe/f32x16,grid,3430,2,100,50,%*[^,],%*[^,],%*[^,],%lf,%lf,%lf,"
-             "L2,%lf,%lf,%lf,%lf,%lf,0",
+             "L2,%lf,%lf,%lf,%lf,%lf,0.75,0",
              v, v + 1, v + 2, v + 3, v + 4, v + 5, v + 6, v + 7),
       8);
   const double expected[8] = {2, 34.3, 17.15, 68.6, 20, 40, 50, 85.75};
   for (int i = 0; i < 8; i++) assert_true(fabs(v[i] / expected[i] - 1) < 1e-12);
   read_line("roofline.csv", 2, line);
   assert_int_equal(strncmp(line, "step,a/ebe/f32x16,grid,3430,2,100,,", 35), 0);
-  assert_int_equal(sscanf(strstr(line, ",,,68."), ",,,%lf,,,%lf,,0", v, v + 1), 2);
+  assert_int_equal(sscanf(strstr(line, ",,,68."), ",,,%lf,,,%lf,,0.75,0", v, v + 1), 2);
   assert_true(fabs(v[1] - 50) < 1e-12);
   cb_results_free(&r);
 }

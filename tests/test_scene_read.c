@@ -114,6 +114,26 @@ static const struct {
     {"{\"block\": {\"cells\": [2, 2, 3], \"cell_m\": 0.1}}",
      "\n {\"shape\": {\"name\": \"hare\", \"cells\": 9, \"length_m\": 1}}", 4,
      "there is no shape 'hare'; 'name' must be rabbit or liver"},
+    {"0.1,\n \"needs\"",
+     "0.1,\n \"stiffness\": [{\"from_s\": 0.02, \"young_pa\": 1},\n"
+     "{\"from_s\": 0.02, \"young_pa\": 2}], \"needs\"",
+     11,
+     "'from_s' is 0.02; it must be above 0.02, where the stage before begins, and below "
+     "'duration_s', 0.1"},
+    {"0.1,\n \"needs\"", "0.1,\n \"stiffness\": [{\"from_s\": 0.1, \"young_pa\": 1}], \"needs\"",
+     10,
+     "'from_s' is 0.1; it must be above 0, where the stage before begins, and below "
+     "'duration_s', 0.1"},
+    {"\"step_s\"", "\"stiffness\": [{\"from_s\": 0.01, \"young_pa\": -1}], \"step_s\"", 8,
+     "'young_pa' is -1; it must be at least 0"},
+    {"\"step_s\"", "\"stiffness\": [{\"from_s\": 0.01, \"young_pa\": 1.7e308}], \"step_s\"", 8,
+     "'young_pa' is 1.7e+308; the stresses would not be finite"},
+    {"\"step_s\"", "\"stiffness\": [{\"young_pa\": 1}], \"step_s\"", 8, "'from_s' is missing"},
+    {"\"step_s\"", "\"ground_m\": \"low\", \"step_s\"", 8,
+     "'ground_m' is a text; it must be a number"},
+    {"\"step_s\"", "\"handles\": [{\"face\": \"z+\", \"over_s\": 1, \"until_s\": 0}], \"step_s\"",
+     8, "'until_s' is 0; it must be above 0"},
+    {"1e-3}", "1e-3, \"rest_distance\": 0}", 10, "'rest_distance' is 0; it must be above 0"},
     {"\"step_s\"",
      "\"handles\": [{\"face\": \"z+\", \"over_s\": 1}],\n"
      " \"damping\": {\"stiffness_s\": 0.1}, \"step_s\"",
@@ -192,6 +212,19 @@ static void a_selection_needs_nodes(void **state) {
   }
 }
 
+/* A text that is no file: the same scene, the same sentences. */
+static void a_text_is_read_like_a_file(void **state) {
+  (void)state;
+  struct cb_scene file, text;
+  assert_int_equal(cb_scene_read(scene_file("{", "{"), &file), CB_OK);
+  assert_int_equal(cb_scene_parse("scene.json", GOOD, &text), CB_OK);
+  assert_true(text.path[0] == '\0' && file.path[0] != '\0');
+  memcpy(text.path, file.path, sizeof text.path);
+  assert_memory_equal(&text, &file, sizeof text);
+  assert_int_equal(cb_scene_parse("mine", "{\n\"about\": 7}", &text), CB_INPUT);
+  assert_string_equal(cb_error_message(), "mine:2: 'about' is 7; it must be a text");
+}
+
 static void a_place_has_a_line(void **state) {
   (void)state;
   static const char *const TEXT = "\n"
@@ -217,6 +250,7 @@ int main(void) {
       cmocka_unit_test(a_bad_scene_is_refused_in_one_sentence),
       cmocka_unit_test(what_is_no_json_is_refused_with_its_line),
       cmocka_unit_test(a_selection_needs_nodes),
+      cmocka_unit_test(a_text_is_read_like_a_file),
       cmocka_unit_test(a_place_has_a_line),
   };
   return cmocka_run_group_tests(tests, temporary_make, temporary_remove);

@@ -110,7 +110,7 @@ static void handles_end_where_they_should(void **state) {
   struct cb_body b;
   static struct cb_outcome cg, direct, again;
   s.fixed[0] = (struct cb_selection){{0, 0, 0}, {1, 1, 0}}, s.fixed_count = 1;
-  s.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0, 0, 0.02}, 0.05};
+  s.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0, 0, 0.02}, 0.05, 0};
   s.handle_count = 1;
   assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
   const struct cb_trial t = trial("polar-exact/ebe/f64", 60), d = trial("polar-exact/bcsr/f64", 0);
@@ -255,8 +255,11 @@ static void what_is_absent_costs_nothing(void **state) {
   with = s;
   with.alpha = 1e-3;
   assert_int_equal(in_scene(with), least);
+  with = s; /* a ground looks at positions, until somebody is on it */
+  with.grounded = true, with.ground = -1;
+  assert_int_equal(in_scene(with), least);
   with = s; /* handles are moved, not computed */
-  with.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0}, 0.01};
+  with.handle[0] = (struct cb_handle){{{0, 0, 1}, {1, 1, 1}}, {0, 0, 1}, {0}, 0.01, 0};
   with.handle_count = 1;
   assert_int_equal(in_scene(with), least);
   cb_body_free(&b);

@@ -47,11 +47,79 @@ static void a_film_begins_and_ends_with_the_scene(void **state) {
   free(last);
 }
 
-static void one_variant_is_run(void **state) {
+/* What plots/film.gp draws: every picture has all faces of a closed surface, one caption, and
+ * what holds the body as long as it does; and a strip has its eight. */
+static void the_data_of_a_strip_are_complete(void **state) {
   (void)state;
-  const char *const words[] = {"run", "scenes/block.json", "--variant", "qr-*", NULL};
+  const char *const words[] = {"run",
+                               "scenes/liver-yank.json",
+                               "--resolution",
+                               "0.5",
+                               "--variant",
+                               "polar-exact/ebe/f64",
+                               "--output",
+                               temporary,
+                               "--pictures",
+                               "20",
+                               NULL};
   struct process p = run_words(NULL, words);
-  assert_one_sentence(&p, "run needs exactly one variant, and --variant selects ");
+  assert_done(&p);
+  assert_non_null(strstr(p.out, "It recovers."));
+  process_free(&p);
+  char *table = whole("liver-yank-film.csv"), *faces = whole("liver-yank-faces.txt");
+  char *grips = whole("liver-yank-grips.txt");
+  assert_int_equal(lines(table), 1 + 21);
+  assert_int_equal(occurrences(table, ",1\n"), 8); /* of column strip */
+  assert_non_null(strstr(table, "\n20,1.6"));      /* the end */
+  const size_t patches = occurrences(faces, "nan nan nan 0 0\nnan"), each = patches / 21;
+  assert_int_equal(patches, 21 * each);
+  assert_int_equal(occurrences(faces, "\n\n\n"), 21); /* pictures */
+  assert_int_equal(lines(faces), patches * 9 + 21);
+  assert_true(each > 100 && each % 2 == 0);    /* closed: three edges of two faces each */
+  assert_true(occurrences(faces, " 1\n") > 0); /* inverted ones */
+  assert_int_equal(occurrences(grips, " 0\n"), 21 * 4);
+  assert_int_equal(occurrences(grips, " 1\n"), 6); /* pictures up to 0.4 s, every 0.08 s */
+  free(table);
+  free(faces);
+  free(grips);
+}
+
+static void several_variants_are_a_table(void **state) {
+  (void)state;
+  const char *const words[] = {"run",
+                               "scenes/rabbit-crush.json",
+                               "--resolution",
+                               "0.5",
+                               "--variant",
+                               "polar-exact/ebe/f64",
+                               "--variant",
+                               "polar-reflected-*/ebe/f64",
+                               "--variant",
+                               "polar-exact/ebe/*",
+                               "--format",
+                               "csv",
+                               "--output",
+                               temporary,
+                               "--pictures",
+                               "3",
+                               NULL};
+  struct process p = run_words(NULL, words);
+  assert_done(&p);
+  const char *second = strchr(p.out, '\n') + 1; /* the first glob's first, and only once */
+  assert_memory_equal(second, "polar-exact/ebe/f64,", 20);
+  assert_int_equal(occurrences(p.out, "polar-exact/ebe/f64,"), 1);
+  assert_true(lines(p.out) > 5);
+  char *table = whole("rabbit-crush-run.csv");
+  assert_string_equal(table, p.out);
+  free(table);
+  process_free(&p);
+}
+
+static void a_resolution_must_be_one(void **state) {
+  (void)state;
+  const char *const words[] = {"run", "scenes/block.json", "--resolution", "0", NULL};
+  struct process p = run_words(NULL, words);
+  assert_one_sentence(&p, "--resolution");
   process_free(&p);
 }
 
@@ -60,7 +128,9 @@ int main(int argc, char **argv) {
   find_program(argv[0]);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_film_begins_and_ends_with_the_scene),
-      cmocka_unit_test(one_variant_is_run),
+      cmocka_unit_test(the_data_of_a_strip_are_complete),
+      cmocka_unit_test(several_variants_are_a_table),
+      cmocka_unit_test(a_resolution_must_be_one),
   };
   return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }

@@ -44,6 +44,7 @@ enum cb_status cb_explorer_try(struct explorer *e, const struct cb_advice *a,
   c->energy = cb_outcome_energy_error(&e->outcome, &e->truth);
   c->torque = e->outcome.torque;
   c->inverted = e->outcome.inverted;
+  c->rest = e->outcome.distance;
   c->step_s = e->outcome.step_s;
   c->unmet = cb_needs_unmet(a, c);
   return CB_OK;
@@ -188,6 +189,7 @@ static void loosen(struct cb_advice *a, enum cb_need need) {
   case CB_NEED_TORQUE: a->needs.torque *= more; break;
   case CB_NEED_ENERGY: a->needs.energy *= more; break;
   case CB_NEED_INVERSION: a->needs.inversion = false; break;
+  case CB_NEED_REST: a->needs.rest *= more; break;
   case CB_NEED_FRAMES: a->frame_s *= more; break;
   default: break;
   }

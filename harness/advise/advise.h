@@ -17,6 +17,7 @@ enum cb_need {
   CB_NEED_TORQUE,
   CB_NEED_ENERGY,
   CB_NEED_INVERSION,
+  CB_NEED_REST,
   CB_NEED_FRAMES,
   CB_NEEDS
 };
@@ -29,6 +30,7 @@ struct cb_candidate {
   bool finite;
   double law[CB_LAW_ORDER + 1]; /* worst violation, where the scene needs that law */
   double error, torque, energy; /* of displacement, relative torque, of energy */
+  double rest;                  /* distance from the rest shape in the end */
   size_t inverted;
   double step_s; /* median of the run; timed: of the interleaved epochs */
   struct cb_interval step;

@@ -75,7 +75,7 @@ static double matrix_bytes(const struct cb_operator *op) {
 
 /* Node indices and the state that the update leaves to the product. */
 static double element_bytes(const struct cb_operator *op, const struct cb_mesh *mesh) {
-  enum { REST_NUMBERS = 12 }; /* REST_ISOTROPIC of kernels/elements.h */
+  enum { REST_NUMBERS = 11 }; /* REST_ISOTROPIC of kernels/elements.h */
   const struct cb_variant *v = cb_operator_variant(op);
   const double scalar = (double)v->arithmetic->scalar_bytes * (double)mesh->tets;
   const double state = scalar * v->model->form[v->storage][0].state_numbers;

@@ -151,7 +151,8 @@ static enum cb_status add_point(const struct session *s, const struct cb_samples
                           .mesh = s->place->name,
                           .tetrahedra = s->scene->mesh.tets,
                           .threads = p->job.threads,
-                          .flops = p->flops[work]};
+                          .flops = p->flops[work],
+                          .visits = cb_operator_visits(p->job.op)};
   snprintf(r.variant, sizeof r.variant, "%s", p->job.name);
   enum cb_status status = cb_median_interval(
       samples->rounds, samples->step_s + subject * samples->stride, &r.time, NULL);
@@ -273,6 +274,49 @@ static void print_work(const struct cb_results *r, size_t work, const char *colu
   cb_bench_print(stream, title, t);
 }
 
+/* The product of the same model, mesh, threads and arithmetic in clusters; NULL: not timed. */
+static const struct cb_roofline *in_clusters(const struct cb_results *r,
+                                             const struct cb_roofline *single) {
+  char name[CB_NAME];
+  struct cb_variant v = *cb_variant_find(single->variant);
+  v.storage = CB_EBE_CLUSTER;
+  cb_variant_name(&v, name);
+  for (const struct cb_roofline *p = r->rooflines; p < r->rooflines + r->roofline_count; p++)
+    if (strcmp(p->variant, name) == 0 && strcmp(p->work, single->work) == 0 &&
+        strcmp(p->mesh, single->mesh) == 0 && p->threads == single->threads)
+      return p;
+  return NULL;
+}
+
+/* Single elements and clusters do the same arithmetic with other numbers of visits. */
+static void print_split(const struct cb_results *r, FILE *stream) {
+  struct cb_table *t = cb_table_create("variant,mesh,threads,visits,visits_in_clusters,ns_a_visit,"
+                                       "ns_the_rest,peak_%_of_the_rest,visits_for_50_%");
+  for (size_t i = 0; t && i < r->roofline_count; i++) {
+    const struct cb_roofline *p = &r->rooflines[i], *c;
+    const struct cb_variant *v = cb_variant_find(p->variant);
+    if (strcmp(p->work, WORK_NAME[0]) != 0 || !v || v->storage != CB_EBE) continue;
+    if (v->arithmetic->lanes == 1 || !(c = in_clusters(r, p))) continue; /* one lane, one node */
+    const double tets = (double)p->tetrahedra, single = p->time.value / tets;
+    const double visit = (single - c->time.value / tets) / (p->visits - c->visits);
+    const double rest = single - visit * p->visits, at_peak = p->flops / p->peak;
+    cb_table_text(t, p->variant);
+    cb_table_text(t, p->mesh);
+    cb_table_integer(t, (long long)p->threads);
+    cb_bench_number_cell(t, p->visits);
+    cb_bench_number_cell(t, c->visits);
+    cb_bench_number_cell(t, 1e9 * visit);
+    cb_bench_number_cell(t, 1e9 * rest);
+    cb_bench_number_cell(t, 100 * at_peak / rest);
+    cb_bench_number_cell(t, (2 * at_peak - rest) / visit);
+  }
+  cb_bench_print(stream,
+                 "What binds a product: its time per tetrahedron, in single elements and in "
+                 "clusters, as a visit of a node\n(gather, transpose, scatter) times visits, and "
+                 "the rest; how many visits would leave 50 % of the peak",
+                 t);
+}
+
 static void print(const struct cb_results *r, FILE *stream) {
   print_work(
       r, 0, "variant,mesh,tetrahedra,threads,us,flops,gflop_s,peak_%,attainable_%,bytes,gb_s,level",
@@ -284,6 +328,7 @@ static void print(const struct cb_results *r, FILE *stream) {
   print_work(r, 1, "variant,mesh,tetrahedra,threads,us,flops,gflop_s,peak_%",
              "A whole step, 5 iterations: flops (counted) per tetrahedron against the peak",
              stream);
+  print_split(r, stream);
 }
 
 /* Whole: its points stand beside bounds of the machine measured just before. */

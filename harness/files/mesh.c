@@ -96,3 +96,17 @@ enum cb_status cb_mesh_grid(size_t nx, size_t ny, size_t nz, double edge, struct
   *mesh = made;
   return CB_OK;
 }
+
+double cb_mesh_quality(const double *X, const uint32_t *t) {
+  double e[9], square = 0;
+  for (int j = 0; j < 9; j++) e[j] = X[3 * t[1 + j / 3] + j % 3] - X[3 * t[0] + j % 3];
+  const double six = e[0] * (e[4] * e[8] - e[5] * e[7]) + e[1] * (e[5] * e[6] - e[3] * e[8]) +
+                     e[2] * (e[3] * e[7] - e[4] * e[6]);
+  for (int a = 0; a < 4; a++)
+    for (int b = 0; b < a; b++)
+      for (int k = 0; k < 3; k++) {
+        const double d = X[3 * t[a] + k] - X[3 * t[b] + k];
+        square += d * d;
+      }
+  return M_SQRT2 * six / pow(square / 6, 1.5);
+}

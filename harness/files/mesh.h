@@ -53,4 +53,8 @@ enum cb_status cb_mesh_read(const char *path, struct cb_mesh *mesh, long long **
 enum cb_status cb_positions_read(const char *path, const struct cb_mesh *mesh,
                                  const long long *numbers, double *x);
 
+/* Of the tetrahedron of nodes t[4] at X: 6 sqrt(2) V / (root mean square edge)^3, 1 for the
+ * regular one, 0 for a flat one, negative where its orientation is. */
+double cb_mesh_quality(const double *X, const uint32_t *t);
+
 #endif

@@ -139,22 +139,6 @@ static void fill_lattice(struct lattice *l) {
       }
 }
 
-/* 6 sqrt(2) V / (root mean square edge)^3: 1 for the regular tetrahedron, negative upside
- * down. */
-static double quality(const double *X, const uint32_t *t) {
-  double e[9], square = 0;
-  for (int j = 0; j < 9; j++) e[j] = X[3 * t[1 + j / 3] + j % 3] - X[3 * t[0] + j % 3];
-  const double six = e[0] * (e[4] * e[8] - e[5] * e[7]) + e[1] * (e[5] * e[6] - e[3] * e[8]) +
-                     e[2] * (e[3] * e[7] - e[4] * e[6]);
-  for (int a = 0; a < 4; a++)
-    for (int b = 0; b < a; b++)
-      for (int k = 0; k < 3; k++) {
-        const double d = X[3 * t[a] + k] - X[3 * t[b] + k];
-        square += d * d;
-      }
-  return M_SQRT2 * six / pow(square / 6, 1.5);
-}
-
 static const double LEAST = 0.2; /* quality that is kept */
 
 /* Kuhn's six tetrahedra of a cell: along the diagonal, one for each order of the axes. */
@@ -181,7 +165,7 @@ static size_t inside(const struct lattice *l, uint32_t *tet) {
         flat &= l->f[t[j]] == 0;
         for (int k = 0; k < 3; k++) middle[k] += l->X[3 * t[j] + k] / 4;
       }
-      if (!in || !(quality(l->X, t) > LEAST)) continue;
+      if (!in || !(cb_mesh_quality(l->X, t) > LEAST)) continue;
       if (flat && value(l->shape, middle) > -0.05 * l->cell) continue;
       if (tet) memcpy(tet + 4 * count, t, sizeof t);
       count++;
@@ -245,7 +229,7 @@ static void project(const struct lattice *l, struct cb_mesh *mesh, const size_t 
       bool good = true;
       for (int k = 0; k < 3; k++) p[k] = from[k] + part * (to[k] - from[k]);
       for (size_t n = start[i]; n < start[i + 1]; n++)
-        good &= quality(mesh->X, mesh->tet + 4 * around[n]) > LEAST;
+        good &= cb_mesh_quality(mesh->X, mesh->tet + 4 * around[n]) > LEAST;
       if (good) break;
       memcpy(p, from, sizeof from);
     }

@@ -68,7 +68,7 @@ struct cb_roofline {
   const char *work, *mesh, *level; /* string constants; level: "" for a step */
   char variant[CB_NAME];
   size_t tetrahedra, threads;
-  double flops, bytes;
+  double flops, bytes, visits;        /* per tetrahedron; visits: cb_operator_visits */
   struct cb_interval time;            /* s, of all tetrahedra */
   double peak, bandwidth, attainable; /* flop/s, B/s, flop/s */
 };

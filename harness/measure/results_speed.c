@@ -9,7 +9,8 @@ struct cb_table *cb_results_roofline_table(const struct cb_results *r) {
   struct cb_table *t = cb_table_create(
       "work,variant,mesh,tetrahedra,threads,flops_per_tetrahedron,bytes_per_tetrahedron,"
       "time_s_median,time_s_low,time_s_high,flops_per_byte,gflops,gb_per_s,level,peak_gflops,"
-      "level_gb_per_s,attainable_gflops,percent_of_peak,percent_of_attainable,quick");
+      "level_gb_per_s,attainable_gflops,percent_of_peak,percent_of_attainable,"
+      "node_visits_per_tetrahedron,quick");
   for (size_t i = 0; t && i < r->roofline_count; i++) {
     const struct cb_roofline *p = &r->rooflines[i];
     const double rate = p->flops * (double)p->tetrahedra / p->time.value;
@@ -30,6 +31,7 @@ struct cb_table *cb_results_roofline_table(const struct cb_results *r) {
     cell(t, 1e-9 * p->attainable);
     cell(t, 100 * rate / p->peak);
     cell(t, 100 * rate / p->attainable);
+    cell(t, p->visits);
     cb_table_integer(t, r->quick);
   }
   return t;

@@ -41,6 +41,15 @@ static bool chosen(const struct cb_selection *where, const struct cb_box *box, c
   return true;
 }
 
+size_t cb_body_chosen(const struct cb_body *body, const struct cb_selection *where,
+                      uint32_t *node) {
+  const struct cb_box box = cb_mesh_bounds(&body->at.mesh);
+  size_t count = 0;
+  for (uint32_t i = 0; i < body->at.mesh.nodes; i++)
+    if (chosen(where, &box, body->at.mesh.X + 3 * i)) node[count++] = i;
+  return count;
+}
+
 /* How many nodes are chosen; none is refused. */
 static enum cb_status count_chosen(const struct cb_body *b, const struct cb_box *box,
                                    const struct cb_selection *where, const char *what, size_t n,
@@ -186,9 +195,14 @@ static void turn(const double *axis, double *r) {
   memcpy(r, q, sizeof q);
 }
 
+bool cb_handle_holds(const struct cb_handle *handle, double t) {
+  return !(handle->until > 0) || t <= handle->until * (1 + 1e-9);
+}
+
 void cb_body_grip(const struct cb_body *body, double t, double *x) {
   for (size_t n = 0; n < body->scene->handle_count; n++) {
     const struct cb_grip *g = &body->grip[n];
+    if (!cb_handle_holds(g->handle, t)) continue;
     const double way = fmin(1, t / g->handle->over);
     const double axis[3] = {way * g->handle->turn[0], way * g->handle->turn[1],
                             way * g->handle->turn[2]};
@@ -211,12 +225,15 @@ static enum cb_status fill(struct cb_body *b, double resolution) {
   at->material = b->scene->material;
   at->mass = malloc(nodes * sizeof *at->mass);
   at->fixed = malloc(nodes);
+  b->anchored = malloc(nodes);
   at->x = malloc(3 * nodes * sizeof *at->x);
   at->v = malloc(3 * nodes * sizeof *at->v);
-  if (!at->mass || !at->fixed || !at->x || !at->v) return cb_fail_memory("the scene");
+  if (!at->mass || !at->fixed || !b->anchored || !at->x || !at->v)
+    return cb_fail_memory("the scene");
   for (int k = 0; k < 3; k++) b->size = fmax(b->size, box.high[k] - box.low[k]);
   cb_mesh_mass(&at->mesh, at->material.density, at->mass);
   enum cb_status status = hold(b, &box);
+  memcpy(b->anchored, at->fixed, nodes);
   for (size_t n = 0; !status && n < b->scene->handle_count; n++) status = grip(b, &box, n);
   if (!status) status = push(b, &box);
   if (status) return status;
@@ -238,6 +255,7 @@ enum cb_status cb_body_create(const struct cb_scene *scene, double resolution,
 
 void cb_body_free(struct cb_body *body) {
   for (size_t n = 0; n < CB_SCENE_LIST; n++) free(body->grip[n].node);
+  free(body->anchored);
   free(body->external);
   cb_bench_scene_free(&body->at);
   *body = (struct cb_body){0};

@@ -53,19 +53,29 @@ static enum cb_status read_text(const char *path, char **text) {
   return cb_fail(CB_INPUT, "%s:1: the file is empty; a scene is a JSON object", path);
 }
 
-enum cb_status cb_json_open(const char *path, struct cb_json *json) {
+/* json->text has been read. */
+static enum cb_status load(struct cb_json *json) {
   json_error_t error;
-  *json = (struct cb_json){.path = path};
-  enum cb_status status = read_text(path, &json->text);
-  if (status) return status;
   errno = 0;
   json->root = json_loads(json->text, JSON_REJECT_DUPLICATES, &error);
   /* Jansson would call it a syntax error. */
   if (!json->root && errno == ENOMEM) return cb_fail_memory("the scene file");
   if (!json->root)
-    return cb_fail(CB_INPUT, "%s:%d: %s; a scene is a JSON object", path, error.line, error.text);
+    return cb_fail(CB_INPUT, "%s:%d: %s; a scene is a JSON object", json->path, error.line,
+                   error.text);
   if (!json_is_object(json->root)) return cb_json_fail(json, "a scene must be a JSON object");
   return CB_OK;
+}
+
+enum cb_status cb_json_open(const char *path, struct cb_json *json) {
+  *json = (struct cb_json){.path = path};
+  enum cb_status status = read_text(path, &json->text);
+  return status ? status : load(json);
+}
+
+enum cb_status cb_json_parse(const char *path, const char *text, struct cb_json *json) {
+  *json = (struct cb_json){.path = path, .text = strdup(text)};
+  return json->text ? load(json) : cb_fail_memory("the scene");
 }
 
 void cb_json_close(struct cb_json *json) {

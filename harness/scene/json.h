@@ -21,6 +21,8 @@ struct cb_json {
 /* CB_INPUT for a syntax error, a repeated key, a file that is no object; CB_IO,
  * CB_MEMORY. Close with cb_json_close, after a failure as well. */
 enum cb_status cb_json_open(const char *path, struct cb_json *json);
+/* The same of a text, which is copied; path: its name in messages. */
+enum cb_status cb_json_parse(const char *path, const char *text, struct cb_json *json);
 void cb_json_close(struct cb_json *json);
 
 enum cb_field_kind {

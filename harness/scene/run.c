@@ -1,113 +1,31 @@
 /* run.c - see run.h.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "harness/scene/run.h"
+#include "harness/scene/way.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "harness/error.h"
 #include "harness/measure/timer.h"
 #include "harness/progress.h"
-#include "reference/direct.h"
 #include "reference/energy.h"
-
-/* A body on its way. */
-struct way {
-  const struct cb_body *body;
-  struct cb_step_parameters step;
-  size_t steps;
-  struct cb_job job;
-  struct cb_direct *direct; /* NULL: conjugate gradients */
-  double *blocks, *diagonal;
-  void *external; /* node vectors of the arithmetic, or NULL */
-  void *force;
-  double *x, *v, *f; /* [3*nodes] */
-  double *time;      /* [steps], s */
-  double most_torque, most_lever, most_net, most_force;
-};
-
-static void close_way(struct way *w) {
-  cb_job_free(&w->job);
-  cb_direct_free(w->direct);
-  free(w->blocks);
-  free(w->diagonal);
-  free(w->external);
-  free(w->force);
-  free(w->x);
-  free(w->v);
-  free(w->f);
-  free(w->time);
-}
-
-static enum cb_status open_direct(struct way *w) {
-  const struct cb_bench_scene *at = &w->body->at;
-  const uint32_t *row_start, *column;
-  cb_operator_pattern(w->job.op, &row_start, &column);
-  w->blocks = malloc(9 * sizeof *w->blocks * row_start[at->mesh.nodes]);
-  w->diagonal = malloc(at->mesh.nodes * sizeof *w->diagonal);
-  if (!w->blocks || !w->diagonal) return cb_fail_memory("the direct solver");
-  for (size_t i = 0; i < at->mesh.nodes; i++)
-    w->diagonal[i] = at->mass[i] * (1 + w->step.h * w->step.beta);
-  return cb_bench_explain(
-      cb_direct_create(at->mesh.nodes, row_start, column, at->fixed, &w->direct),
-      "the direct solver");
-}
-
-static enum cb_status open_way(const struct cb_body *body, const struct cb_trial *trial,
-                               struct way *w) {
-  const struct cb_scene *scene = body->scene;
-  const struct cb_arithmetic *a = trial->variant->arithmetic;
-  const size_t nodes = body->at.mesh.nodes;
-  const double look = scene->duration / CB_SAMPLES;
-  const size_t between = (size_t)ceil(look / trial->step * (1 - 1e-9));
-  *w = (struct way){.body = body, .steps = CB_SAMPLES * between};
-  w->step = (struct cb_step_parameters){look / (double)between, scene->alpha, scene->beta,
-                                        trial->iterations};
-  enum cb_status status =
-      cb_job_create(trial->variant, trial->threads, &body->at, &w->step, &w->job);
-  if (status) return status;
-  if (cb_operator_tune(w->job.op, &trial->tuning) != CB_OK)
-    return cb_fail(CB_INPUT, "%s has not what is to be tuned", w->job.name);
-  w->force = aligned_alloc(64, w->job.vector_bytes);
-  w->x = malloc(3 * nodes * sizeof *w->x);
-  w->v = malloc(3 * nodes * sizeof *w->v);
-  w->f = malloc(3 * nodes * sizeof *w->f);
-  w->time = malloc(w->steps * sizeof *w->time);
-  if (!w->force || !w->x || !w->v || !w->f || !w->time) return cb_fail_memory("the simulation");
-  if (body->external) {
-    w->external = aligned_alloc(64, w->job.vector_bytes);
-    if (!w->external) return cb_fail_memory("the loads");
-    a->from_double(nodes, body->external, w->external);
-  }
-  return trial->iterations ? CB_OK : open_direct(w);
-}
 
 /* ---- one step ------------------------------------------------------------------------ */
 
-static void put_number(const struct cb_arithmetic *a, void *vector, size_t i, double value) {
-  switch (a->scalar_bytes) {
-  case sizeof(float): ((float *)vector)[i] = (float)value; break;
-  case sizeof(double): ((double *)vector)[i] = value; break;
-  default: ((__float128 *)vector)[i] = value;
-  }
-}
-
-static void move_handles(struct way *w, double t) {
-  const struct cb_arithmetic *a = w->job.variant->arithmetic;
+static void move_handles(struct cb_way *w, double t) {
   cb_body_grip(w->body, t, w->x);
   for (size_t n = 0; n < w->body->scene->handle_count; n++)
     for (size_t i = 0; i < w->body->grip[n].count; i++) {
       const size_t node = w->body->grip[n].node[i];
-      for (size_t k = 0; k < 3; k++)
-        put_number(a, w->job.x, a->stride * node + k, w->x[3 * node + k]);
+      if (!cb_handle_holds(w->body->grip[n].handle, t)) break;
+      for (size_t k = 0; k < 3; k++) cb_way_put(w, w->job.x, node, k, w->x[3 * node + k]);
     }
 }
 
 /* In double, as the direct solver is. */
-static enum cb_status step_directly(struct way *w) {
+static enum cb_status step_directly(struct cb_way *w) {
   double *x = w->job.x, *v = w->job.v, *dv = w->f;
   const struct cb_bench_scene *at = &w->body->at;
   cb_stepper_right_side(w->job.stepper, x, v, w->external);
@@ -115,7 +33,7 @@ static enum cb_status step_directly(struct way *w) {
   enum cb_status status = cb_direct_factor(w->direct, w->blocks, w->diagonal);
   if (!status) status = cb_direct_solve(w->direct, cb_stepper_b(w->job.stepper), dv);
   for (size_t i = 0; !status && i < 3 * at->mesh.nodes; i++) {
-    v[i] = at->fixed[i / 3] ? 0 : v[i] + dv[i];
+    v[i] = w->held[i / 3] ? 0 : v[i] + dv[i];
     x[i] += w->step.h * v[i];
   }
   return cb_bench_explain(status, "a step of the scene");
@@ -127,7 +45,7 @@ static enum cb_status step_directly(struct way *w) {
 static double larger(double a, double b) { return isnan(a) || a > b ? a : b; }
 
 /* Sums over the elastic forces, which are internal: they should vanish. */
-static void look_at_forces(struct way *w) {
+static void look_at_forces(struct cb_way *w) {
   const size_t nodes = w->body->at.mesh.nodes;
   const struct cb_arithmetic *a = w->job.variant->arithmetic;
   double c[3] = {0}, net[3] = {0}, torque[3] = {0}, force = 0, lever = 0;
@@ -153,7 +71,7 @@ static void look_at_forces(struct way *w) {
   w->most_lever = larger(lever, w->most_lever);
 }
 
-static void look(struct way *w, struct cb_outcome *o, size_t sample) {
+static void look(struct cb_way *w, struct cb_outcome *o, size_t sample) {
   const struct cb_bench_scene *at = &w->body->at;
   const struct cb_arithmetic *a = w->job.variant->arithmetic;
   a->to_double(at->mesh.nodes, w->job.x, w->x);
@@ -166,7 +84,10 @@ static void look(struct way *w, struct cb_outcome *o, size_t sample) {
   double kinetic = 0;
   for (size_t i = 0; i < 3 * at->mesh.nodes; i++)
     kinetic += at->mass[i / 3] / 2 * w->v[i] * w->v[i];
-  o->energy[sample] = kinetic + cb_elastic_energy(&at->mesh, &at->material, w->x, &o->inverted);
+  o->energy[sample] = kinetic + cb_elastic_energy(&at->mesh, &w->material, w->x, &o->inverted);
+  o->distance = cb_body_distance(w->body, w->x);
+  if (o->inverted > o->most_inverted) o->most_inverted = o->inverted;
+  o->most_distance = larger(o->distance, o->most_distance);
 }
 
 /* ---- all steps -------------------------------------------------------------------------- */
@@ -176,30 +97,33 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static enum cb_status step_once(struct way *w, size_t n) {
+static enum cb_status step_once(struct cb_way *w, size_t n) {
+  enum cb_status status = cb_way_change(w, n);
+  if (status) return status;
   if (w->body->scene->handle_count) move_handles(w, (double)(n + 1) * w->step.h);
   const double begin = cb_timer_now();
-  enum cb_status status = CB_OK;
   if (w->direct)
     status = step_directly(w);
   else
     cb_stepper_step(w->job.stepper, w->job.x, w->job.v, w->external);
   w->time[n] = cb_timer_now() - begin;
+  if (w->touching) cb_way_land(w);
   if (cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted while simulating");
   return status;
 }
 
-static void conclude(struct way *w, struct cb_outcome *o, size_t steps) {
+static void conclude(struct cb_way *w, struct cb_outcome *o, size_t steps) {
   qsort(w->time, steps, sizeof *w->time, ascending);
   o->steps = w->steps;
   o->step_s = w->time[steps / 2];
   o->seconds = o->step_s / w->step.h;
+  if (!o->finite) o->distance = NAN;
   o->torque = !o->finite ? NAN : w->most_lever > 0 ? w->most_torque / w->most_lever : 0;
   o->net_force = !o->finite ? NAN : w->most_force > 0 ? w->most_net / w->most_force : 0;
 }
 
-static enum cb_status show(struct way *w, const struct cb_watch *watch, size_t step) {
-  if (!watch || step % watch->every) return CB_OK;
+static enum cb_status show(struct cb_way *w, const struct cb_watch *watch, size_t step) {
+  if (!watch || (step % watch->every && step < w->steps)) return CB_OK;
   w->job.variant->arithmetic->to_double(w->body->at.mesh.nodes, w->job.x, w->x);
   return watch->see(watch->context, (double)step * w->step.h, w->x);
 }
@@ -211,9 +135,9 @@ enum cb_status cb_body_run(const struct cb_body *body, const struct cb_trial *tr
 
 enum cb_status cb_body_show(const struct cb_body *body, const struct cb_trial *trial,
                             const struct cb_watch *watch, struct cb_outcome *outcome) {
-  struct way w;
+  struct cb_way w;
   struct cb_outcome o = {.finite = true};
-  enum cb_status status = open_way(body, trial, &w);
+  enum cb_status status = cb_way_open(body, trial, &w);
   size_t done = 0;
   const size_t between = w.steps / CB_SAMPLES;
   if (!status) status = show(&w, watch, 0);
@@ -226,7 +150,7 @@ enum cb_status cb_body_show(const struct cb_body *body, const struct cb_trial *t
     conclude(&w, &o, done);
     *outcome = o;
   }
-  close_way(&w);
+  cb_way_close(&w);
   return status;
 }
 
@@ -279,4 +203,8 @@ double cb_outcome_energy_error(const struct cb_outcome *outcome, const struct cb
     largest = fmax(largest, fabs(truth->energy[s]));
   }
   return worst / largest;
+}
+
+bool cb_outcome_recovers(const struct cb_outcome *outcome, const struct cb_needs *needs) {
+  return outcome->finite && outcome->inverted == 0 && outcome->distance <= needs->rest;
 }

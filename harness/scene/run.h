@@ -24,14 +24,16 @@ struct cb_outcome {
   double energy[CB_SAMPLES];               /* kinetic and cb_elastic_energy, J */
   double torque, net_force;                /* of the elastic forces: largest |sum x x f| over
                                               largest sum |x - c||f|; |sum f| over sum |f| */
-  size_t inverted;                         /* elements in the end */
+  size_t inverted;                         /* elements in the end ... */
+  size_t most_inverted;                    /* ... and at the look with the most */
+  double distance, most_distance;          /* cb_body_distance, likewise, 1 */
   size_t steps;
-  double step_s;  /* median time of a step; handles and looks are not in it */
+  double step_s;  /* median time of a step; handles, changes and looks are not in it */
   double seconds; /* of step_s, for a simulated second */
 };
 
-/* Who sees the body at its start and after every so many steps: positions x[3*nodes] at time
- * t, s. What it returns ends the run unless it is CB_OK. */
+/* Who sees the body at its start, after every so many steps and in the end: positions x[3*nodes] at
+ * time t, s. What it returns ends the run unless it is CB_OK. */
 struct cb_watch {
   size_t every;
   enum cb_status (*see)(void *context, double t, const double *x);
@@ -61,5 +63,7 @@ enum cb_status cb_body_truth_iterated(const struct cb_body *body, size_t threads
 double cb_outcome_error(const struct cb_outcome *outcome, const struct cb_outcome *truth,
                         double size);
 double cb_outcome_energy_error(const struct cb_outcome *outcome, const struct cb_outcome *truth);
+/* Does the body end upright, as near to its rest shape as is needed? */
+bool cb_outcome_recovers(const struct cb_outcome *outcome, const struct cb_needs *needs);
 
 #endif

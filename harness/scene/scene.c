@@ -81,7 +81,7 @@ static enum cb_status read_handle(struct cb_json *json, const json_t *object, st
                                   size_t n) {
   struct chosen c;
   struct cb_handle *h = &s->handle[n];
-  struct cb_field fields[SELECTION_FIELDS + 3];
+  struct cb_field fields[SELECTION_FIELDS + 4];
   selection_fields(&c, fields);
   fields[SELECTION_FIELDS] =
       (struct cb_field){"turn_rad", CB_FIELD_VECTOR, h->turn, -ANY, ANY, false};
@@ -89,8 +89,30 @@ static enum cb_status read_handle(struct cb_json *json, const json_t *object, st
       (struct cb_field){"move_m", CB_FIELD_VECTOR, h->move, -ANY, ANY, false};
   fields[SELECTION_FIELDS + 2] =
       (struct cb_field){"over_s", CB_FIELD_NUMBER, &h->over, TINY, ANY, true};
+  fields[SELECTION_FIELDS + 3] =
+      (struct cb_field){"until_s", CB_FIELD_NUMBER, &h->until, TINY, ANY, false};
   enum cb_status status = cb_json_object(json, object, fields, COUNT(fields));
   return status ? status : to_selection(json, &c, &h->where);
+}
+
+static enum cb_status read_stage(struct cb_json *json, const json_t *object, struct cb_scene *s,
+                                 size_t n) {
+  struct cb_stiffening *stage = &s->stage[n];
+  struct cb_material unused;
+  const double before = n ? s->stage[n - 1].from : 0;
+  const struct cb_field fields[] = {{"from_s", CB_FIELD_NUMBER, &stage->from, TINY, ANY, true},
+                                    {"young_pa", CB_FIELD_NUMBER, &stage->young, 0, ANY, true}};
+  enum cb_status status = cb_json_object(json, object, fields, COUNT(fields));
+  if (status) return status;
+  if (!(stage->from > before && stage->from < s->duration))
+    return cb_json_fail(json,
+                        "'from_s' is %g; it must be above %g, where the stage before begins, and "
+                        "below 'duration_s', %g",
+                        stage->from, before, s->duration);
+  return cb_material_isotropic(stage->young, s->material.poisson, s->material.density, &unused)
+             ? cb_json_fail(json, "'young_pa' is %g; the stresses would not be finite",
+                            stage->young)
+             : CB_OK;
 }
 
 static enum cb_status read_list(struct cb_json *json, const char *key, const json_t *list,
@@ -133,14 +155,15 @@ static enum cb_status read_needs(struct cb_json *json, const json_t *object, str
   static const enum cb_law laws[] = {CB_LAW_ROTATION, CB_LAW_NEWTON, CB_LAW_EULER, CB_LAW_ENERGY,
                                      CB_LAW_ORDER};
   bool asked[COUNT(laws)] = {false};
-  struct cb_field fields[COUNT(laws) + 5] = {
+  struct cb_field fields[COUNT(laws) + 6] = {
       {"displacement_error", CB_FIELD_NUMBER, &n->displacement, TINY, ANY, false},
       {"torque", CB_FIELD_NUMBER, &n->torque, TINY, ANY, false},
       {"energy_error", CB_FIELD_NUMBER, &n->energy, TINY, ANY, false},
       {"frames_per_s", CB_FIELD_NUMBER, &n->frames_per_s, TINY, ANY, false},
+      {"rest_distance", CB_FIELD_NUMBER, &n->rest, TINY, ANY, false},
       {"inversion", CB_FIELD_FLAG, &n->inversion, 0, 0, false}};
   for (size_t i = 0; i < COUNT(laws); i++)
-    fields[5 + i] = (struct cb_field){cb_law_name[laws[i]], CB_FIELD_FLAG, &asked[i], 0, 0, false};
+    fields[6 + i] = (struct cb_field){cb_law_name[laws[i]], CB_FIELD_FLAG, &asked[i], 0, 0, false};
   enum cb_status status = cb_json_member(json, "needs", object, fields, COUNT(fields));
   for (size_t i = 0; i < COUNT(laws); i++)
     if (asked[i]) n->laws |= CB_KEEPS(laws[i]);
@@ -175,14 +198,17 @@ static enum cb_status check_whole(struct cb_json *json, const char *about, struc
 static enum cb_status read_scene(struct cb_json *json, struct cb_scene *s) {
   const char *about = NULL;
   json_t *geometry = NULL, *material = NULL, *fixed = NULL, *loads = NULL, *handles = NULL;
-  json_t *start = NULL, *damping = NULL, *needs = NULL;
+  json_t *stiffness = NULL, *start = NULL, *damping = NULL, *needs = NULL;
+  s->ground = NAN;
   const struct cb_field fields[] = {{"about", CB_FIELD_TEXT, &about, 0, 0, true},
                                     {"geometry", CB_FIELD_OBJECT, &geometry, 0, 0, true},
                                     {"material", CB_FIELD_OBJECT, &material, 0, 0, true},
                                     {"fixed", CB_FIELD_LIST, &fixed, 0, 0, false},
                                     {"loads", CB_FIELD_LIST, &loads, 0, 0, false},
                                     {"handles", CB_FIELD_LIST, &handles, 0, 0, false},
+                                    {"stiffness", CB_FIELD_LIST, &stiffness, 0, 0, false},
                                     {"gravity_m_s2", CB_FIELD_VECTOR, s->gravity, -ANY, ANY, false},
+                                    {"ground_m", CB_FIELD_NUMBER, &s->ground, -ANY, ANY, false},
                                     {"start", CB_FIELD_OBJECT, &start, 0, 0, false},
                                     {"damping", CB_FIELD_OBJECT, &damping, 0, 0, false},
                                     {"step_s", CB_FIELD_NUMBER, &s->step, TINY, ANY, true},
@@ -194,10 +220,12 @@ static enum cb_status read_scene(struct cb_json *json, struct cb_scene *s) {
   if (!status) status = read_list(json, "fixed", fixed, read_fixed, s, &s->fixed_count);
   if (!status) status = read_list(json, "loads", loads, read_load, s, &s->load_count);
   if (!status) status = read_list(json, "handles", handles, read_handle, s, &s->handle_count);
+  if (!status) status = read_list(json, "stiffness", stiffness, read_stage, s, &s->stage_count);
   if (!status && start) status = read_start(json, start, s);
   if (!status && damping) status = read_damping(json, damping, s);
   if (!status) status = read_needs(json, needs, s);
   if (!status) status = check_whole(json, about, s);
+  s->grounded = !isnan(s->ground);
   return status;
 }
 
@@ -208,18 +236,29 @@ static void name_scene(const char *path, char name[64]) {
   if (dot) *dot = '\0';
 }
 
-enum cb_status cb_scene_read(const char *path, struct cb_scene *scene) {
-  struct cb_json json;
-  struct cb_scene s = {.scale = 1,
-                       .stretch = {1, 1, 1},
-                       .needs = {.displacement = INFINITY, .torque = INFINITY, .energy = INFINITY}};
+/* *json has been opened, with that status. */
+static enum cb_status read_opened(enum cb_status status, struct cb_json *json, const char *path,
+                                  struct cb_scene *scene) {
+  const struct cb_needs none = {
+      .displacement = INFINITY, .torque = INFINITY, .energy = INFINITY, .rest = INFINITY};
+  struct cb_scene s = {.scale = 1, .stretch = {1, 1, 1}, .needs = none};
   name_scene(path, s.name);
-  snprintf(s.path, sizeof s.path, "%s", path);
-  enum cb_status status = cb_json_open(path, &json);
-  if (!status) status = read_scene(&json, &s);
-  cb_json_close(&json);
+  if (!status) status = read_scene(json, &s);
+  cb_json_close(json);
   if (!status) *scene = s;
   return status;
+}
+
+enum cb_status cb_scene_read(const char *path, struct cb_scene *scene) {
+  struct cb_json json;
+  enum cb_status status = read_opened(cb_json_open(path, &json), &json, path, scene);
+  if (!status) snprintf(scene->path, sizeof scene->path, "%s", path);
+  return status;
+}
+
+enum cb_status cb_scene_parse(const char *name, const char *text, struct cb_scene *scene) {
+  struct cb_json json;
+  return read_opened(cb_json_parse(name, text, &json), &json, name, scene);
 }
 
 enum cb_status cb_scene_fail(const struct cb_scene *scene, const char *list, size_t n,

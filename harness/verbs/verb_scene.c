@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "harness/error.h"
+#include "harness/files/mesh.h"
 #include "harness/scene/body.h"
 
 static const char doc[] =
@@ -25,8 +26,20 @@ static void add_needs(struct cb_table *t, const struct cb_needs *n) {
   row(t, "displacement_error", n->displacement, "needed: at most, of the size");
   row(t, "torque", n->torque, "needed: at most, relative");
   row(t, "energy_error", n->energy, "needed: at most, of the largest energy");
+  row(t, "rest_distance", n->rest, "needed: at most, of the size");
   if (n->frames_per_s > 0) row(t, "frames_per_s", n->frames_per_s, "needed, in real time");
   if (n->inversion) row(t, "inversion", 1, "needed: upright in the end");
+}
+
+static void add_quality(struct cb_table *t, const struct cb_mesh *mesh) {
+  double least = INFINITY, sum = 0;
+  for (size_t e = 0; e < mesh->tets; e++) {
+    const double quality = fabs(cb_mesh_quality(mesh->X, mesh->tet + 4 * e));
+    least = fmin(least, quality);
+    sum += quality;
+  }
+  row(t, "quality_least", least, "of the regular tetrahedron");
+  row(t, "quality_mean", sum / (double)mesh->tets, "of the regular tetrahedron");
 }
 
 static enum cb_status print(const struct cb_body *b, enum cb_format format) {
@@ -38,10 +51,13 @@ static enum cb_status print(const struct cb_body *b, enum cb_format format) {
   for (size_t n = 0; n < s->handle_count; n++) moved += b->grip[n].count;
   row(t, "nodes", (double)b->at.mesh.nodes, "");
   row(t, "tetrahedra", (double)b->at.mesh.tets, "");
+  add_quality(t, &b->at.mesh);
   row(t, "size", b->size, "m");
   row(t, "held_nodes", (double)(fixed > moved ? fixed - moved : 0), "");
   row(t, "moved_nodes", (double)moved, "");
   row(t, "loads", (double)s->load_count, "");
+  if (s->stage_count) row(t, "stages", (double)s->stage_count, "of stiffness");
+  if (s->grounded) row(t, "ground", s->ground, "m");
   row(t, "step", s->step, "s");
   row(t, "steps", ceil(s->duration / s->step * (1 - 1e-9)), "");
   add_needs(t, &s->needs);

@@ -8,12 +8,12 @@
 
 enum { CB_CLAIMS_MOST = 24 };
 struct cb_claim {
-  char id[12];        /* C1 ... C10, erratum, and ours: T1 ... */
-  char paper[200];    /* what the paper (T: this project) says */
-  char measured[400]; /* the numbers */
-  char verdict[200];  /* reproduced / not reproduced / only if ...; for a claim
-                         that is exact: exactly */
-  bool failed;        /* something this program guarantees does not hold */
+  char id[12];         /* C1 ... C15, erratum, and ours: T1 ... */
+  char paper[200];     /* what the paper (T: this project) says */
+  char measured[3200]; /* the numbers */
+  char verdict[200];   /* reproduced / not reproduced / only if ...; for a claim
+                          that is exact: exactly */
+  bool failed;         /* something this program guarantees does not hold */
 };
 
 /* claims[*count] from the laws (all models, double precision) and from what is

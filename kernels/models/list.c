@@ -33,9 +33,9 @@ MODELS(DECLARE)
 static const struct cb_model *const models[] = {MODELS(LIST) NULL};
 
 static const struct cb_element_functions elements = {
-    CB_NAME(cb_elements_create), CB_NAME(cb_elements_free),  CB_NAME(cb_elements_reset),
-    CB_NAME(cb_elements_tune),   CB_NAME(cb_elements_bytes), CB_NAME(cb_elements_pattern),
-    CB_NAME(cb_elements_blocks)};
+    CB_NAME(cb_elements_create),  CB_NAME(cb_elements_free),  CB_NAME(cb_elements_reset),
+    CB_NAME(cb_elements_tune),    CB_NAME(cb_elements_bytes), CB_NAME(cb_elements_visits),
+    CB_NAME(cb_elements_pattern), CB_NAME(cb_elements_blocks)};
 
 #ifndef CB_NEEDS
 #define CB_NEEDS ""

@@ -386,6 +386,10 @@ void CB_NAME(cb_elements_tune)(struct cb_elements *E, const struct cb_tuning *tu
 
 size_t CB_NAME(cb_elements_bytes)(const struct cb_elements *E) { return E->bytes; }
 
+double CB_NAME(cb_elements_visits)(const struct cb_elements *E) {
+  return (double)(E->packs->nodes * LANES) / (double)E->tets;
+}
+
 const struct cb_pattern *CB_NAME(cb_elements_pattern)(const struct cb_elements *E) {
   return E->pattern;
 }

@@ -1,0 +1,104 @@
+/* verb_extremes.c - `corobench extremes`: what breaks, and where.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness/error.h"
+#include "harness/extremes/paths.h"
+#include "harness/extremes/report.h"
+#include "harness/files/output.h"
+#include "harness/measure/environment.h"
+#include "harness/verbs/verbs.h"
+
+static const char doc[] =
+    "Drive each model to the extremes and say where it is finite, right and keeps the laws that it "
+    "claims, against quad precision. Without --variant: every model by ebe in f64 and f32, scalar "
+    "and in the widest lanes of this processor. Exit status 1 when a row is not finite or breaks a "
+    "law. With --output, write extremes.csv and extremes.json (all rows) extremes-map.csv (the "
+    "worst "
+    "of each model, arithmetic and sweep, and where it was met first) and extremes-paths.csv "
+    "(frames and forces of elements that are turned inside out)."
+    "\vAn error is in roundings of the arithmetic times the condition of the exact answer; above "
+    "1000 it is inaccurate. Not judged: the exact answer is no number of the arithmetic, or the "
+    "method has none there.";
+
+enum { KEY_SWEEP = 0x4000 };
+static const struct argp_option own_options[] = {
+    {"sweep", KEY_SWEEP, "NAME", 0, "That sweep alone", 0}, {0}};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  if (key != KEY_SWEEP) return ARGP_ERR_UNKNOWN;
+  *(const char **)state->input = text;
+  return 0;
+}
+
+/* Of those that run here, the most lanes of that scalar. */
+static bool widest(const struct cb_arithmetic *a) {
+  for (size_t i = 0; cb_arithmetics[i]; i++) {
+    const struct cb_arithmetic *other = cb_arithmetics[i];
+    if (other->scalar_bytes == a->scalar_bytes && other->lanes > a->lanes &&
+        cb_arithmetic_runs(other))
+      return false;
+  }
+  return true;
+}
+
+static bool asked(const struct cb_options *o, const struct cb_variant *v) {
+  const struct cb_arithmetic *a = v->arithmetic;
+  if (!cb_arithmetic_runs(a) || a->scalar_bytes > sizeof(double)) return false;
+  if (o->glob_count) return cb_options_selects(o, v);
+  return v->storage == CB_EBE && (a->lanes == 1 || widest(a));
+}
+
+static enum cb_status write_files(const struct cb_extremes *all, const char *directory) {
+  struct cb_table *rows = cb_extremes_rows(all), *map = cb_extremes_map(all), *paths = NULL;
+  enum cb_status status = rows && map ? CB_OK : cb_fail_memory("the tables of the extremes");
+  if (!status) status = cb_paths_table(all, &paths);
+  if (!status) status = cb_output_directory(directory);
+  if (!status) status = cb_output_table(directory, "extremes.csv", rows, CB_CSV);
+  if (!status) status = cb_output_table(directory, "extremes.json", rows, CB_JSON);
+  if (!status) status = cb_output_table(directory, "extremes-map.csv", map, CB_CSV);
+  if (!status) status = cb_output_table(directory, "extremes-paths.csv", paths, CB_CSV);
+  if (!status) status = cb_environment_footer(directory, "extremes-footer.txt");
+  cb_table_free(rows);
+  cb_table_free(map);
+  cb_table_free(paths);
+  return status;
+}
+
+static enum cb_status sweep(const struct cb_options *o, const char *name) {
+  size_t count, chosen = 0;
+  const struct cb_variant *v = cb_variants(&count);
+  const struct cb_variant **variants = calloc(count + 1, sizeof *variants);
+  if (!variants) return cb_fail_memory("the list of variants");
+  for (size_t i = 0; i < count; i++)
+    if (asked(o, &v[i])) variants[chosen++] = &v[i];
+  struct cb_extremes all = {.seed = o->seed, .variants = variants};
+  enum cb_status status =
+      chosen ? cb_extremes_run(name, &all)
+             : cb_fail(CB_INPUT, "--variant selects nothing that can be judged: 'counted' is what "
+                                 "the others are held against, lanes must run on this processor");
+  if (!status) {
+    struct cb_table *t = cb_extremes_words(&all);
+    status = t ? cb_table_print(t, o->format, stdout) : cb_fail_memory("the map");
+    cb_table_free(t);
+  }
+  if (!status && o->output) status = write_files(&all, o->output);
+  if (!status) status = cb_extremes_judge(&all);
+  cb_extremes_free(&all);
+  free(variants);
+  return status;
+}
+
+static enum cb_status run(int argc, char **argv) {
+  struct cb_options o;
+  const char *name = NULL;
+  enum cb_status status =
+      cb_options_parse(argc, argv, CB_OPT_VARIANT | CB_OPT_FORMAT | CB_OPT_OUTPUT | CB_OPT_SEED,
+                       doc, own_options, parse, &name, &o);
+  return status ? status : sweep(&o, name);
+}
+
+const struct cb_verb cb_verb_extremes = {"extremes",
+                                         "what breaks, and where: shapes, inputs, steps", run};
