@@ -9,7 +9,7 @@ OPENMP  = -fopenmp
 CFLAGS  = -std=gnu11 $(OPT) -g1 -fno-math-errno -ffp-contract=off $(WARN) $(WERROR) $(SANFLAGS) $(OPENMP)
 INCLUDES = -I. -I/usr/include/suitesparse -I/usr/local/include/suitesparse
 CPPFLAGS = $(INCLUDES) -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"'
-LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread
+LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread -ldl
 # The operation counter: every quad-precision call of the counted arithmetic
 # goes through harness/verify/counter.c.
 COUNT   = -Wl,--wrap=__addtf3,--wrap=__subtf3,--wrap=__multf3,--wrap=__divtf3,--wrap=sqrtq
@@ -44,11 +44,25 @@ ARITH_f32x8   = -DCB_SCALAR=float -DCB_LANES=8 -DCB_SUFFIX=f32x8 $(AVX2)
 ARITH_f64x8   = -DCB_SCALAR=double -DCB_LANES=8 -DCB_SUFFIX=f64x8 $(AVX512)
 ARITH_f32x16  = -DCB_SCALAR=float -DCB_LANES=16 -DCB_SUFFIX=f32x16 $(AVX512)
 
+comma     := ,
 GENERIC   := $(wildcard kernels/models/*.c kernels/storage/*.c kernels/solver/*.c)
 ONCE      := $(wildcard kernels/*.c reference/*.c) $(wildcard harness/*/*.c) $(filter-out harness/corobench.c,$(wildcard harness/*.c))
 # The slowest first, so that no processor waits for them in the end.
 OBJECTS   := $(foreach a,$(ARITHMETICS),$(GENERIC:%.c=$(BUILD)/$(a)/%.o)) $(ONCE:%.c=$(BUILD)/%.o)
 TESTS     := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+# Fuzzed are the readers of files, one target each, with what they need and no more: the
+# registry, for the names of laws, lists no arithmetic there.
+FUZZERS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
+FUZZED    := $(wildcard harness/error.c harness/nearest.c harness/files/*.c) \
+             $(addprefix harness/scene/,json.c lines.c parts.c scene.c points.c body.c) \
+             $(addprefix harness/measure/,environment.c results.c results_slices.c results_json.c \
+               results_speed.c results_tables.c statistics.c) \
+             harness/bench/bench_scene.c kernels/material.c kernels/registry.c
+# How a test makes allocations fail where the sanitizer has taken the place of malloc already.
+SHORTAGE  := $(if $(findstring address,$(SANFLAGS)),-lsuitesparseconfig \
+               $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc reallocarray aligned_alloc free))
+# Libraries that `corobench frames --check` is tried on, some of them broken on purpose.
+LIBRARIES := $(patsubst tests/frames/%.c,$(BUILD)/tests/frames/%.so,$(wildcard tests/frames/*.c))
 # Scenes that the program carries with it.
 $(BUILD)/harness/verify/claims_scenes.o: scenes/rabbit-crush.json scenes/liver-yank.json
 # The files that state the commit, compiled anew when it changes.
@@ -56,7 +70,7 @@ DATED     := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -lsw CB_COMMIT harness/*/*
 
 all: $(BUILD)/corobench ## build the program, build/corobench (the default)
 
-programs: all $(TESTS) ## build the program and the tests, run nothing
+programs: all $(TESTS) $(LIBRARIES) ## build the program and the tests, run nothing
 
 setup: ## install the missing Debian packages (as root or through sudo)
 	@CC='$(CC)' INCLUDES='$(INCLUDES)' sh harness/setup.sh $(ALSO)
@@ -64,15 +78,36 @@ setup: ## install the missing Debian packages (as root or through sudo)
 test: programs ## build and run all tests; the last line is the total
 	@tests/run $(TESTS)
 
-sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
-	@$(MAKE) --no-print-directory BUILD=build-sanitize OPT=-O1 \
-	  SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all' test
+# Builds of their own, for what looks for faults.
+SANITIZED = --no-print-directory BUILD=build-sanitize OPT=-O1 \
+              SANFLAGS='-fsanitize=address,undefined -fno-sanitize-recover=all'
+RACING    = --no-print-directory BUILD=build-races OPT=-O1 SANFLAGS='-fsanitize=thread'
+FUZZING   = --no-print-directory BUILD=build-fuzz OPT=-O1 CC=clang OPENMP= \
+              SANFLAGS='-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all'
 
+sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
+	@$(MAKE) $(SANITIZED) test
+
+RACERS = build-races/tests/test_threads build-races/tests/test_machine
 # Races are looked for where threads share most: the slow sanitizer gets no more.
 races: | $(FIRST) ## threads on a larger mesh under the thread sanitizer
-	@$(MAKE) --no-print-directory BUILD=build-races OPT=-O1 SANFLAGS='-fsanitize=thread' \
-	  build-races/tests/test_threads
+	@$(MAKE) $(RACING) $(RACERS)
 	@TSAN_OPTIONS=halt_on_error=1 build-races/tests/test_threads '*_larger_*'
+	@TSAN_OPTIONS=halt_on_error=1 build-races/tests/test_machine test_crew
+
+FUZZ_SECONDS = 8
+fuzz: | $(FIRST) ## feed every reader with broken files (clang), FUZZ_SECONDS=8 a reader
+	@$(MAKE) $(FUZZING) fuzzers
+	@tests/fuzz/run $(FUZZ_SECONDS) $(FUZZERS:$(BUILD)/%=build-fuzz/%)
+
+fuzzers: $(FUZZERS)
+
+robustness: programs ## all that may go wrong, tried for under 4 minutes (builds apart): one table
+	@$(MAKE) $(SANITIZED) build-sanitize/tests/test_mutations build-sanitize/tests/test_shortage
+	@$(MAKE) $(RACING) $(RACERS)
+	@$(MAKE) $(FUZZING) fuzzers
+	@tests/robustness $(FUZZ_SECONDS) $(BUILD) build-sanitize build-races \
+	  $(FUZZERS:$(BUILD)/%=build-fuzz/%)
 
 verify: all ## check laws, operation counts and the paper's claims; fails when an expectation does
 	@$(BUILD)/corobench verify --output results/latest
@@ -95,6 +130,10 @@ trade: all ## error against time of every setting on a scene (SCENE=FILE), drawn
 	@$(BUILD)/corobench trade $(SCENE) --output results/latest
 	@plots/draw.sh results/latest
 
+recovery: all ## which models come back from inverted and collapsed shapes, drawn
+	@$(BUILD)/corobench recovery --output results/latest
+	@plots/draw.sh results/latest
+
 films: all ## the scenes of figures 5 and 6: how every model ends, a strip and an animation
 	@for scene in rabbit-crush liver-yank; do \
 	  $(BUILD)/corobench run scenes/$$scene.json --variant polar-exact/ebe/f64 --variant '*/ebe/f64' \
@@ -108,7 +147,7 @@ plots: | $(FIRST) ## draw the figures again from stored results, without measuri
 
 help: ## this list
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
-	  while IFS='|' read -r target text; do printf '  make %-9s %s\n' "$$target" "$$text"; done
+	  while IFS='|' read -r target text; do printf '  make %-10s %s\n' "$$target" "$$text"; done
 
 clean: ## remove everything built
 	rm -rf build build-*
@@ -136,9 +175,21 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 	@echo 'LINK $@'
 	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
 
+$(BUILD)/tests/test_shortage: private COUNT += $(SHORTAGE)
+
+$(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
+	@echo 'LINK $@'
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -Wl,--wrap=cb_environment_read $(ARITHMETICS:%=-Wl,--defsym=cb_arithmetic_%=0) -o $@ $^ $(LDLIBS)
+
+# As somebody else builds his: no sanitizer of ours.
+$(BUILD)/tests/frames/%.so: tests/frames/%.c tests/frames/jacobi.h $(BUILD)/flags
+	@mkdir -p $(@D)
+	@echo 'LINK $@'
+	@$(CC) -std=gnu11 -O2 $(WARN) $(WERROR) -I. -shared -fPIC -o $@ $< -lm
+
 # Goals that run something run one after the other, in the order given.
 BEFORE :=
-$(foreach goal,$(filter test sanitize races verify bench truth extremes trade films plots,$(MAKECMDGOALS)), \
+$(foreach goal,$(filter test sanitize races fuzz robustness verify bench truth extremes trade films recovery plots,$(MAKECMDGOALS)), \
   $(eval $(goal): | $(BEFORE))$(eval BEFORE := $(goal)))
 
 # What is built under other flags, or states another commit, is out of date.
@@ -151,6 +202,6 @@ $(BUILD)/commit: export STAMP = $(COMMIT)
 $(BUILD)/flags $(BUILD)/commit: always | $(FIRST)
 	$(stamp)
 
-.PHONY: all programs setup test sanitize races verify bench truth extremes trade films plots help clean always
+.PHONY: all programs setup test sanitize races fuzz fuzzers robustness verify bench truth extremes trade films recovery plots help clean always
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

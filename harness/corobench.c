@@ -11,10 +11,10 @@
 #include "harness/progress.h"
 #include "harness/verbs/verbs.h"
 
-static const struct cb_verb *const verbs[] = {&cb_verb_advise, &cb_verb_trade,   &cb_verb_bench,
-                                              &cb_verb_verify, &cb_verb_truth,   &cb_verb_extremes,
-                                              &cb_verb_force,  &cb_verb_ops,     &cb_verb_scene,
-                                              &cb_verb_run,    &cb_verb_machine, &cb_verb_list};
+static const struct cb_verb *const verbs[] = {
+    &cb_verb_advise,   &cb_verb_trade,    &cb_verb_bench,   &cb_verb_verify, &cb_verb_truth,
+    &cb_verb_extremes, &cb_verb_recovery, &cb_verb_frames,  &cb_verb_force,  &cb_verb_ops,
+    &cb_verb_scene,    &cb_verb_run,      &cb_verb_machine, &cb_verb_list};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static void print_help(FILE *stream) {

@@ -11,6 +11,9 @@ enum cb_status cb_fail(enum cb_status status, const char *format, ...) {
   va_start(arguments, format);
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
+  /* Names out of somebody's file may hold anything, line feeds and escapes to a terminal. */
+  for (char *c = message; *c; c++)
+    if ((unsigned char)*c < ' ' || *c == '\x7f') *c = '?';
   return status;
 }
 

@@ -9,7 +9,8 @@
 
 /* Record "what, where, remedy" (printf-like) and return status, so that a
  * failing function ends with `return cb_fail(CB_INPUT, ...)`. A later call
- * replaces the message. status must not be CB_OK. */
+ * replaces the message. Control characters become '?': the sentence is one line.
+ * status must not be CB_OK. */
 enum cb_status cb_fail(enum cb_status status, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -30,6 +30,13 @@ has_openmp() { # COMPILER
   $1 -fopenmp -o "$scratch/try" "$scratch/try.c" 2>/dev/null
 }
 
+has_fuzzer() { # COMPILER
+  echo 'int LLVMFuzzerTestOneInput(const char *data, unsigned long size);
+    int LLVMFuzzerTestOneInput(const char *data, unsigned long size) { return data && size > 9; }' \
+    >"$scratch/try.c"
+  $1 -fsanitize=fuzzer,address -o "$scratch/try" "$scratch/try.c" 2>/dev/null
+}
+
 lack() { # PACKAGE WHY
   packages="$packages $1"
   reasons="$reasons  $1: $2
@@ -51,7 +58,10 @@ look() { # COMMAND...
   done
   for compiler in "$CC" "$@"; do # gcc brings its own
     case $compiler in
-    *clang*) has_openmp "$compiler" || lack libomp-dev 'OpenMP for clang, runs the threads' ;;
+    *clang*)
+      has_openmp "$compiler" || lack libomp-dev 'OpenMP for clang, runs the threads'
+      has_fuzzer "$compiler" || lack libclang-rt-dev 'sanitizers for clang and libFuzzer, for make fuzz'
+      ;;
     esac
   done
 }

@@ -10,7 +10,7 @@ if ! command -v gnuplot >/dev/null; then
   exit 2
 fi
 if [ ! -f "$dir/bench.csv" ] && [ ! -f "$dir/figure3.csv" ] &&
-  [ ! -f "$dir/trade.csv" ] && [ ! -f "$dir/tangent.csv" ] &&
+  [ ! -f "$dir/trade.csv" ] && [ ! -f "$dir/tangent.csv" ] && [ ! -f "$dir/recovery.csv" ] &&
   [ ! -f "$dir/extremes-map.csv" ] && ! ls "$dir"/*-film.csv >/dev/null 2>&1; then
   echo "plots: there are no results in $dir; 'make bench' measures some" >&2
   exit 2
@@ -32,7 +32,7 @@ draw() {
 for kind in svg png; do
   rm -f "$dir"/figure*."$kind"
   for name in convergence speed roofline scaling frame33 trade tangent \
-    extremes extremes-paths; do rm -f "$dir/$name.$kind"; done
+    extremes extremes-paths recovery recovery-time; do rm -f "$dir/$name.$kind"; done
 done
 has figure3.csv '^[^,]+,[0-9]' && draw figure3
 has fits.csv '^[^,]+,[0-9]' && draw figure4
@@ -45,6 +45,7 @@ has frame33.csv '^([^,]+,){5}[0-9]' && draw frame33
 has tangent.csv '^[^,]+,[0-9]' && draw tangent
 has extremes-map.csv '^[^,]+,[^,]+,[^,]+,f[0-9]' && draw extremes
 has extremes-paths.csv '^[^,]+,[0-9]' && draw extremes-paths
+has recovery.csv '^[^,]+,[^,]+,[0-9]' && draw recovery && draw recovery-time
 has trade.csv '^[^,]+,(model|storage),' && draw trade
 for film in "$dir"/*-film.csv; do
   [ -f "$film" ] || continue

@@ -77,6 +77,14 @@ static void fill_pattern(struct cb_direct *d, const uint32_t *row_start, const u
   start[3 * d->free_nodes] = (SuiteSparse_long)entry;
 }
 
+/* What solve2 would allocate by itself; where memory ends there, it reads what it has not got. */
+static enum cb_status allocate_workspace(struct cb_direct *d, size_t n) {
+  const bool there = cholmod_l_ensure_dense(&d->x, n, 1, n, CHOLMOD_REAL, &d->common) &&
+                     cholmod_l_ensure_dense(&d->Y, n, 1, n, CHOLMOD_REAL, &d->common) &&
+                     cholmod_l_ensure_dense(&d->E, 1, d->L->maxesize, 1, CHOLMOD_REAL, &d->common);
+  return there ? CB_OK : CB_MEMORY;
+}
+
 static enum cb_status build_matrix(struct cb_direct *d, const uint32_t *row_start,
                                    const uint32_t *column, const uint8_t *fixed) {
   size_t n = 3 * d->free_nodes, entries = lower_entries(d, row_start, column, fixed);
@@ -92,6 +100,7 @@ static enum cb_status build_matrix(struct cb_direct *d, const uint32_t *row_star
   fill_pattern(d, row_start, column, fixed, rank);
   d->L = cholmod_l_analyze(d->A, &d->common);
   status = status_of(&d->common);
+  if (!status) status = allocate_workspace(d, n);
 done:
   free(rank);
   return status;

@@ -67,6 +67,7 @@ static const struct {
     {"\"step_s\": 0.001,", "", 1, "'step_s' is missing"},
     {"\"poisson\": 0.3, ", "", 4, "'poisson' is missing"},
     {"            \"force_n\": [1, 0, 0]", "\"face\": \"z+\"", 6, "'force_n' is missing"},
+    {"young_pa", "you\\nng_pa", 4, "unknown key 'you?ng_pa' (nearest: 'young_pa')"},
     /* types */
     {"1e5", "\"soft\"", 4, "'young_pa' is a text; it must be a number"},
     {"1e5", "null", 4, "'young_pa' is null; it must be a number"},

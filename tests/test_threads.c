@@ -5,6 +5,7 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/team.h"
+#include "tests/tally.h"
 #include "tests/variants.h"
 
 static const struct cb_step_parameters PARAMETERS = {
@@ -99,6 +100,8 @@ static void three_steps(const struct cb_variant *variant, const struct scene *s,
   cb_operator_free(op);
 }
 
+static size_t runs;
+
 static void compare_steps(const struct cb_variant *v, const struct scene *s,
                           const struct cb_material *m) {
   const size_t n = 3 * s->mesh.nodes;
@@ -112,6 +115,7 @@ static void compare_steps(const struct cb_variant *v, const struct scene *s,
     three_steps(v, s, m, THREADS[t], many, first);
     assert_rounding(name, n, many, one, v->arithmetic->roundoff, s->condition, LIMIT);
     three_steps(v, s, m, THREADS[t], many, again);
+    runs += 2;
     if (memcmp(first, again, bytes) != 0)
       fail_msg("%s: %zu threads do not repeat their result", name, THREADS[t]);
   }
@@ -154,6 +158,12 @@ static void threads_share_larger_meshes(void **state) {
   gsl_rng_free(rng);
 }
 
+static int end(void **state) {
+  (void)state;
+  tally("runs on threads", runs);
+  return 0;
+}
+
 /* argv[1]: a pattern of the tests to run; without it all of them. */
 int main(int argc, char **argv) {
   if (argc > 1) cmocka_set_test_filter(argv[1]);
@@ -162,5 +172,5 @@ int main(int argc, char **argv) {
       cmocka_unit_test(shares_are_all_and_once),     cmocka_unit_test(threads_do_what_one_does),
       cmocka_unit_test(threads_share_larger_meshes),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, NULL, end);
 }

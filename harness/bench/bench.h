@@ -43,6 +43,7 @@ extern const size_t cb_bench_paper_cells[3];
 /* ---- a run of bench -------------------------------------------------------- */
 
 struct cb_gate_result;
+struct cb_journal;
 
 struct cb_bench {
   const struct cb_options *options;
@@ -53,11 +54,13 @@ struct cb_bench {
   struct cb_threads threads, paper_threads;
   struct cb_results results;
   struct cb_gate_result *gates; /* [variants]: what has been verified so far */
+  struct cb_journal *journal;   /* finished parts, not owned; NULL: none are kept */
 };
 
 struct cb_bench_figure {
   const char *name;
   double share; /* of the seconds */
+  bool whole;   /* one part; the others are made of parts (cb_bench_part) */
   enum cb_status (*run)(struct cb_bench *b, double budget_s);
   void (*print)(const struct cb_results *r, FILE *stream); /* nothing if nothing was measured */
 };
@@ -70,6 +73,13 @@ extern const struct cb_bench_figure cb_bench_figure4, cb_bench_figure7, cb_bench
 enum cb_status cb_bench_create(const struct cb_options *options, bool quick, double seconds,
                                struct cb_bench *b);
 void cb_bench_free(struct cb_bench *b);
+
+/* A part of a run that is finished or not: what is timed in the same rounds, so that nothing
+ * is ever compared across two sessions. If the journal has the part, its results are added
+ * from there and nothing is done; else `work` is, and what it has added goes to the journal. */
+typedef enum cb_status cb_bench_work(struct cb_bench *b, void *context);
+enum cb_status cb_bench_part(struct cb_bench *b, const char *key, cb_bench_work *work,
+                             void *context);
 
 /* What is timed without --threads: 1 and, where there are two processors, 2. */
 struct cb_threads cb_bench_threads(void);
@@ -148,8 +158,9 @@ struct cb_block {
   struct cb_job *jobs;
   struct cb_samples samples; /* of subject job * count_count + count */
 };
-/* Time the entries whose variants pass the gate for about budget_s, give every
- * entry its rows, and write the results. */
+/* Time the entries whose variants pass the gate for about budget_s and give every
+ * entry its rows: one part of the run. No two blocks of a figure may have the same mesh,
+ * iterations, first and last entry and number of entries. */
 enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan);
 /* The samples of one job at one iteration count, [samples.rounds], s. */
 const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t count);

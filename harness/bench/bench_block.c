@@ -232,7 +232,8 @@ const double *cb_block_step_s(const struct cb_block *block, size_t job, size_t c
   return block->samples.step_s + subject * block->samples.stride;
 }
 
-enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan) {
+static enum cb_status run_block(struct cb_bench *b, void *context) {
+  const struct cb_block_plan *plan = context;
   struct cb_block block = {.plan = plan};
   block.jobs = calloc(plan->entry_count + 1, sizeof *block.jobs);
   enum cb_status status = block.jobs ? CB_OK : cb_fail_memory("the list of variants");
@@ -241,6 +242,20 @@ enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *pl
   if (!status && block.job_count > 0) status = measure(b, &block);
   if (!status && block.job_count > 0 && plan->after) status = plan->after(b, &block);
   free_block(&block);
+  return status;
+}
+
+enum cb_status cb_bench_block(struct cb_bench *b, const struct cb_block_plan *plan) {
+  char key[2 * CB_NAME + 256], first[CB_NAME], last[CB_NAME];
+  const struct cb_entry *begin = plan->entries, *end = begin + plan->entry_count - 1;
+  cb_variant_name(begin->variant, first);
+  cb_variant_name(end->variant, last);
+  snprintf(key, sizeof key,
+           "figure %s: %zu tetrahedra, %zu nodes, %zu counts of iterations from %zu, %zu entries "
+           "from %s on %zu to %s on %zu threads",
+           plan->figure, plan->scene->mesh.tets, plan->scene->mesh.nodes, plan->count_count,
+           plan->iterations[0], plan->entry_count, first, begin->threads, last, end->threads);
+  const enum cb_status status = cb_bench_part(b, key, run_block, (void *)plan);
   b->done_s += plan->budget_s;
-  return status ? status : cb_results_write(&b->results);
+  return status;
 }

@@ -120,7 +120,6 @@ static enum cb_status run(struct cb_bench *b, double budget_s) {
     else
       status = add_variant(b, &scene, entries[i].variant, work);
   }
-  if (!status) status = cb_results_write(&b->results);
   free(work);
   cb_bench_scene_free(&scene);
   free(entries);
@@ -154,4 +153,4 @@ static void print(const struct cb_results *r, FILE *stream) {
                  t);
 }
 
-const struct cb_bench_figure cb_bench_convergence = {"convergence", 0.005, run, print};
+const struct cb_bench_figure cb_bench_convergence = {"convergence", 0.005, true, run, print};

@@ -178,4 +178,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   print_crossings(r, stream);
 }
 
-const struct cb_bench_figure cb_bench_figure4 = {"4", 0.1, run, print};
+const struct cb_bench_figure cb_bench_figure4 = {"4", 0.1, false, run, print};

@@ -207,4 +207,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   }
 }
 
-const struct cb_bench_figure cb_bench_figure7 = {"7", 0.22, run, print};
+const struct cb_bench_figure cb_bench_figure7 = {"7", 0.22, false, run, print};

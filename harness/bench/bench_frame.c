@@ -119,13 +119,13 @@ static enum cb_status add_frame(struct session *s, size_t measurements) {
                            .fits = s->fits,
                            .exceeds = s->exceeds};
   cb_variant_name(s->entry.variant, frame.variant);
-  const enum cb_status status = cb_results_add_frame(&s->b->results, &frame);
-  return status ? status : cb_results_write(&s->b->results);
+  return cb_results_add_frame(&s->b->results, &frame);
 }
 
 /* One search, from what a smaller or larger mesh took. */
-static enum cb_status search(struct session *s, const struct cb_row *row) {
-  const struct cb_bench *b = s->b;
+static enum cb_status search(struct cb_bench *b, void *context) {
+  struct session *s = context;
+  const struct cb_row *row = cb_scaling_last(&b->results, s->entry);
   const double memory = b->results.environment.memory, tets = (double)row->tetrahedra;
   const double room = memory > 0 ? MEMORY_SHARE * memory / cb_scaling_bytes(row, 1) : 1e8;
   struct cb_search search = {.low = LEAST,
@@ -164,12 +164,15 @@ enum cb_status cb_frame_search(struct cb_bench *b, size_t count, struct cb_entry
   for (size_t i = 0; !status && i < count; i++) {
     const bool in_time = i == 0 || cb_timer_now() - begin < budget_s;
     for (size_t k = 0; !status && k < MESHES; k++, s.first_s += s.budget_s) {
-      const struct cb_row *row = cb_scaling_last(&b->results, entries[i]);
-      if (!row) continue;
+      char key[2 * CB_NAME + 64], name[CB_NAME];
+      if (!cb_scaling_last(&b->results, entries[i])) continue;
       s.entry = entries[i];
       s.kind = &KINDS[k];
       s.fits = s.exceeds = (struct cb_frame_size){0};
-      status = in_time ? search(&s, row) : add_frame(&s, 0);
+      cb_variant_name(entries[i].variant, name);
+      snprintf(key, sizeof key, "frame: %s, %s on %zu threads", KINDS[k].name, name,
+               entries[i].threads);
+      status = in_time ? cb_bench_part(b, key, search, &s) : add_frame(&s, 0);
     }
   }
   return status;

@@ -107,4 +107,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   free(rows);
 }
 
-const struct cb_bench_figure cb_bench_mesh = {"mesh", 1, run, print};
+const struct cb_bench_figure cb_bench_mesh = {"mesh", 1, false, run, print};

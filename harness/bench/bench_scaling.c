@@ -273,4 +273,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   cb_frame_print(r, stream);
 }
 
-const struct cb_bench_figure cb_bench_scaling = {"scaling", 0.42, run, print};
+const struct cb_bench_figure cb_bench_scaling = {"scaling", 0.42, false, run, print};

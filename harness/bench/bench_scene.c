@@ -88,8 +88,8 @@ enum cb_status cb_bench_scene_grid(const size_t cells[3], unsigned long seed,
 enum cb_status cb_bench_scene_irregular(const size_t cells[3], unsigned long seed,
                                         struct cb_bench_scene *scene) {
   struct cb_bench_scene made = {0};
-  enum cb_status status = cb_mesh_irregular(cells[0], cells[1], cells[2],
-                                            HEIGHT / (double)cells[2], seed, &made.mesh);
+  enum cb_status status =
+      cb_mesh_irregular(cells[0], cells[1], cells[2], HEIGHT / (double)cells[2], seed, &made.mesh);
   if (status) return status;
   status = cb_order_apply(&made.mesh);
   if (!status) status = complete(seed, &made);

@@ -96,7 +96,7 @@ static double error_of(size_t n, const double *found, const double *exact, const
 struct session {
   const struct place *place;
   struct truth truths[64];
-  size_t truth_count, base_rows;
+  size_t truth_count;
 };
 
 static enum cb_status truth_of(struct session *s, const struct cb_variant *v,
@@ -147,6 +147,15 @@ static enum cb_status add_speed(struct cb_bench *b, const struct cb_block *block
   return status;
 }
 
+/* The base is in every block, and once among the speeds. */
+static bool has_base(const struct cb_results *r, const struct place *place) {
+  for (size_t i = 0; i < r->speed_count; i++)
+    if (strcmp(r->speeds[i].mesh, place->name) == 0 && r->speeds[i].threads == 1 &&
+        strcmp(r->speeds[i].variant, BASE) == 0)
+      return true;
+  return false;
+}
+
 static enum cb_status add_speeds(struct cb_bench *b, const struct cb_block *block) {
   const struct cb_results *r = &b->results;
   struct session *s = block->plan->context;
@@ -155,7 +164,7 @@ static enum cb_status add_speeds(struct cb_bench *b, const struct cb_block *bloc
   while (base < block->job_count && !is_base(&block->jobs[base])) base++;
   const bool compared = base < block->job_count && !block->jobs[base].lost;
   for (size_t j = 0; !status && j < block->job_count; j++) {
-    if (block->jobs[j].lost || (j == base && s->base_rows++ > 0)) continue;
+    if (block->jobs[j].lost || (j == base && has_base(r, s->place))) continue;
     if (compared) status = cb_block_ratio(b, block, base, j, 0, NAN);
     if (!status) status = add_speed(b, block, j, compared ? &r->ratios[r->ratio_count - 1] : NULL);
   }
@@ -243,4 +252,4 @@ static void print(const struct cb_results *r, FILE *stream) {
   for (size_t i = 0; i < MESHES; i++) print_place(r, &PLACES[i], stream);
 }
 
-const struct cb_bench_figure cb_bench_speed = {"speed", 0.1, run, print};
+const struct cb_bench_figure cb_bench_speed = {"speed", 0.1, false, run, print};

@@ -198,26 +198,36 @@ static json_t *cell_json(const struct cell *cell) {
   return json_null();
 }
 
+/* Write one row. jansson says that it failed, and errno of what: a full disk is found when the
+ * stream is flushed. */
+static enum cb_status print_row(const struct cb_table *t, size_t row, FILE *stream) {
+  errno = 0;
+  json_t *object = json_object();
+  bool made = object != NULL;
+  for (size_t c = 0; made && c < t->columns; c++)
+    made = json_object_set_new(object, t->name[c], cell_json(t->cell + row * t->columns + c)) == 0;
+  const bool starved = !made && errno == ENOMEM;
+  const size_t flags = JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(17);
+  const bool lost = made && json_dumpf(object, stream, flags) != 0 && !ferror(stream);
+  json_decref(object);
+  if (starved || lost) return cb_fail_memory("the table");
+  if (made) return CB_OK;
+  return cb_fail(CB_INPUT,
+                 "row %zu of the table cannot be written as JSON, its text is not UTF-8; "
+                 "choose --format csv",
+                 row + 1);
+}
+
 /* Row by row, so that a long table is not held twice. */
 static enum cb_status print_json(const struct cb_table *t, FILE *stream) {
+  enum cb_status status = CB_OK;
   fputs("[", stream);
-  for (size_t row = 0; row < cb_table_rows(t); row++) {
-    json_t *object = json_object();
-    bool made = object != NULL;
-    for (size_t c = 0; c < t->columns; c++)
-      if (json_object_set_new(object, t->name[c], cell_json(t->cell + row * t->columns + c)) != 0)
-        made = false;
+  for (size_t row = 0; !status && row < cb_table_rows(t); row++) {
     fputs(row ? ",\n " : "\n ", stream);
-    if (made) json_dumpf(object, stream, JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(17));
-    json_decref(object);
-    if (!made)
-      return cb_fail(CB_INPUT,
-                     "row %zu of the table cannot be written as JSON, its text is not UTF-8; "
-                     "choose --format csv",
-                     row + 1);
+    status = print_row(t, row, stream);
   }
   fputs("\n]\n", stream);
-  return CB_OK;
+  return status;
 }
 
 enum cb_status cb_table_print(const struct cb_table *t, enum cb_format format, FILE *stream) {

@@ -12,7 +12,7 @@
 #include "harness/files/output.h"
 
 enum cb_status cb_results_create(const char *directory, bool quick, struct cb_results *r) {
-  struct cb_results empty = {.directory = directory, .quick = quick};
+  struct cb_results empty = {.directory = directory, .quick = quick, .session = 1};
   cb_environment_read(&empty.environment);
   struct cb_output probe;
   enum cb_status status = cb_output_directory(directory);
@@ -53,16 +53,14 @@ struct cb_row cb_row_unmeasured(const char *figure, const char *variant,
   return row;
 }
 
-/* The array with room for one more item of that size, or NULL with the array
- * unharmed; its length doubles at the powers of two. */
-static void *grown(void *array, size_t count, size_t size) {
-  if (count & (count - 1)) return array;
-  return realloc(array, (count ? 2 * count : 1) * size);
+void *cb_results_grown(void *list, size_t count, size_t size) {
+  if (count & (count - 1)) return list;
+  return realloc(list, (count ? 2 * count : 1) * size);
 }
 
 #define APPEND(array, count, item)                                                                 \
   do {                                                                                             \
-    void *const larger = grown(array, count, sizeof *(item));                                      \
+    void *const larger = cb_results_grown(array, count, sizeof *(item));                           \
     if (!larger) return cb_fail_memory("the results");                                             \
     (array) = larger;                                                                              \
     (array)[(count)++] = *(item);                                                                  \
@@ -70,7 +68,9 @@ static void *grown(void *array, size_t count, size_t size) {
   } while (0)
 
 enum cb_status cb_results_add_row(struct cb_results *r, const struct cb_row *row) {
-  APPEND(r->rows, r->row_count, row);
+  struct cb_row own = *row;
+  own.session = r->session;
+  APPEND(r->rows, r->row_count, &own);
 }
 
 static enum cb_status add_sample(struct cb_results *r, const struct cb_sample *sample) {
@@ -132,7 +132,9 @@ static enum cb_status write_footer(const struct cb_results *r) {
   if (status) return status;
   char line[512];
   cb_environment_line(&r->environment, sizeof line, line);
-  fprintf(output.stream, "%s%s\n", line, r->quick ? " | QUICK RUN, few samples" : "");
+  fprintf(output.stream, "%s%s", line, r->quick ? " | QUICK RUN, few samples" : "");
+  if (r->session > 1) fprintf(output.stream, " | resumed, %zu sessions", r->session);
+  fprintf(output.stream, "\n");
   return cb_output_commit(&output);
 }
 

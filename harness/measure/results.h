@@ -25,6 +25,7 @@ struct cb_row {
   double setup_s, update_s, solve_s, product_s; /* parts, timed apart */
   double scatter;
   size_t epochs;
+  size_t session; /* that timed it, from 1: more than one if the run was resumed */
 };
 /* samples.csv: one epoch of a row. */
 struct cb_sample {
@@ -98,6 +99,7 @@ struct cb_frame {
 struct cb_results {
   const char *directory; /* not owned */
   bool quick;
+  size_t session; /* of what is added; 1 unless the run is a resumed one */
   struct cb_environment environment;
   size_t row_count, sample_count, ratio_count, fit_count, crossing_count, convergence_count;
   size_t roofline_count, speed_count, frame_count;
@@ -122,7 +124,7 @@ void cb_results_free(struct cb_results *r); /* zeroed is allowed */
 struct cb_row cb_row_unmeasured(const char *figure, const char *variant,
                                 const struct cb_mesh *mesh);
 
-/* Append a copy. CB_MEMORY. */
+/* Append a copy, of this session. CB_MEMORY. */
 enum cb_status cb_results_add_row(struct cb_results *r, const struct cb_row *row);
 /* The row and its samples: step, scatter, epochs and, unless it is a failure
  * already (not ""), status are filled in from them. */
@@ -136,6 +138,10 @@ enum cb_status cb_results_add_convergence(struct cb_results *r,
 enum cb_status cb_results_add_roofline(struct cb_results *r, const struct cb_roofline *roofline);
 enum cb_status cb_results_add_speed(struct cb_results *r, const struct cb_speed *speed);
 enum cb_status cb_results_add_frame(struct cb_results *r, const struct cb_frame *frame);
+
+/* A list with room for one more item of that size, or NULL with the list unharmed; its length
+ * doubles at the powers of two. */
+void *cb_results_grown(void *list, size_t count, size_t size);
 
 /* Write bench.csv, samples.csv, bench.json (a subset of Google Benchmark's
  * schema), ratios.csv, fits.csv, crossings.csv, convergence.csv,

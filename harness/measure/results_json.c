@@ -93,7 +93,9 @@ enum cb_status cb_results_write_json(const struct cb_results *r, const char *nam
   enum cb_status status = cb_output_open(&output, r->directory, name);
   if (status) return status;
   json_t *context = cb_environment_json(&r->environment);
-  if (context && json_object_set_new(context, "quick", json_boolean(r->quick)) != 0) {
+  if (context &&
+      (json_object_set_new(context, "quick", json_boolean(r->quick)) != 0 ||
+       json_object_set_new(context, "sessions", json_integer((json_int_t)r->session)) != 0)) {
     json_decref(context);
     context = NULL;
   }

@@ -12,7 +12,7 @@ struct cb_table *cb_results_bench_table(const struct cb_results *r) {
   struct cb_table *t =
       cb_table_create("figure,variant,tetrahedra,nodes,iterations,threads,step_s_median,step_s_low,"
                       "step_s_high,bytes_per_tetrahedron,status,setup_s,update_s,solve_s,product_s,"
-                      "scatter,epochs,quick");
+                      "scatter,epochs,quick,session");
   for (size_t i = 0; t && i < r->row_count; i++) {
     const struct cb_row *row = &r->rows[i];
     cb_table_text(t, row->figure);
@@ -31,6 +31,7 @@ struct cb_table *cb_results_bench_table(const struct cb_results *r) {
     cell(t, row->scatter);
     count_cell(t, row->epochs);
     cb_table_integer(t, r->quick);
+    count_cell(t, row->session);
   }
   return t;
 }

@@ -56,7 +56,10 @@ static enum cb_status read_text(const char *path, char **text) {
 /* json->text has been read. */
 static enum cb_status load(struct cb_json *json) {
   json_error_t error;
+  errno = 0;
   json->root = json_loads(json->text, JSON_REJECT_DUPLICATES, &error);
+  /* Jansson would call it a syntax error. */
+  if (!json->root && errno == ENOMEM) return cb_fail_memory("the scene file");
   if (!json->root)
     return cb_fail(CB_INPUT, "%s:%d: %s; a scene is a JSON object", json->path, error.line,
                    error.text);

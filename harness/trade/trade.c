@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "harness/error.h"
+#include "harness/files/journal.h"
 #include "harness/progress.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -19,6 +20,7 @@ static const double FINEST = 2;   /* resolution of the truth that refinement is 
 struct sweeper {
   struct cb_trade *trade;
   const struct cb_options *options;
+  struct cb_journal *journal;
   bool quick;
   const char *sweep;
   const struct cb_body *body;
@@ -40,21 +42,61 @@ static enum cb_status add(struct sweeper *s, const struct cb_trade_row *row) {
   return CB_OK;
 }
 
+/* The numbers of a row, in this order in the journal. */
+static json_t *to_json(const struct cb_trade_row *row) {
+  return json_pack("[I, b, o, o, o, o]", (json_int_t)row->tetrahedra, (int)row->finite,
+                   cb_journal_number(row->seconds), cb_journal_number(row->error),
+                   cb_journal_number(row->torque), cb_journal_number(row->energy));
+}
+
+static enum cb_status from_json(const json_t *json, struct cb_trade_row *row) {
+  const json_t *finite = json_array_get(json, 1);
+  row->tetrahedra = (size_t)json_integer_value(json_array_get(json, 0));
+  row->finite = json_is_true(finite);
+  if (json_is_boolean(finite) && cb_journal_to_number(json_array_get(json, 2), &row->seconds) &&
+      cb_journal_to_number(json_array_get(json, 3), &row->error) &&
+      cb_journal_to_number(json_array_get(json, 4), &row->torque) &&
+      cb_journal_to_number(json_array_get(json, 5), &row->energy))
+    return CB_OK;
+  return cb_fail(CB_INPUT, "the journal of the earlier run holds what is no row of a trade; start "
+                           "anew without --resume");
+}
+
+static void name_row(const struct cb_trade_row *row, size_t size, char *key) {
+  const struct cb_trial *t = &row->trial;
+  snprintf(key, size, "%s: %s, %zu iterations, step %.17g s, resolution %g, tuned %zu %g %g",
+           row->sweep, row->variant, t->iterations, t->step, row->resolution,
+           t->tuning.frame_iterations, t->tuning.frame_tolerance, t->tuning.lazy);
+}
+
+static enum cb_status simulate(struct sweeper *s, struct cb_trade_row *row) {
+  const enum cb_status status = cb_body_run(s->body, &row->trial, &s->outcome);
+  if (status) return status;
+  row->tetrahedra = s->body->at.mesh.tets;
+  row->finite = s->outcome.finite;
+  row->seconds = s->outcome.seconds;
+  row->error = cb_outcome_error(&s->outcome, s->truth, s->body->size);
+  row->energy = cb_outcome_energy_error(&s->outcome, s->truth);
+  row->torque = s->outcome.torque;
+  return CB_OK;
+}
+
 static enum cb_status run(struct sweeper *s, const struct cb_trial *trial) {
   struct cb_trade_row row = {.sweep = s->sweep, .trial = *trial, .resolution = s->resolution};
-  char what[CB_NAME + 64];
+  char what[CB_NAME + 64], key[CB_NAME + 256];
   cb_variant_name(trial->variant, row.variant);
+  name_row(&row, sizeof key, key);
+  const json_t *finished = s->journal ? cb_journal_row(s->journal, key, &row.session) : NULL;
+  if (finished) {
+    const enum cb_status status = from_json(finished, &row);
+    return status ? status : add(s, &row);
+  }
+  row.session = s->journal ? cb_journal_session(s->journal) : 1;
   snprintf(what, sizeof what, "%s: %s, %zu iterations", s->sweep, row.variant, trial->iterations);
   cb_progress(s->done, what);
-  enum cb_status status = cb_body_run(s->body, trial, &s->outcome);
-  if (status) return status;
-  row.tetrahedra = s->body->at.mesh.tets;
-  row.finite = s->outcome.finite;
-  row.seconds = s->outcome.seconds;
-  row.error = cb_outcome_error(&s->outcome, s->truth, s->body->size);
-  row.energy = cb_outcome_energy_error(&s->outcome, s->truth);
-  row.torque = s->outcome.torque;
-  return add(s, &row);
+  enum cb_status status = simulate(s, &row);
+  if (!status && s->journal) status = cb_journal_add(s->journal, key, to_json(&row));
+  return status ? status : add(s, &row);
 }
 
 /* The variant of that name, unless --variant leaves it out; NULL: none. */
@@ -260,13 +302,14 @@ static enum cb_status refine(struct sweeper *s, struct cb_outcome *truth) {
 }
 
 enum cb_status cb_trade_run(const struct cb_scene *scene, const struct cb_options *options,
-                            bool quick, struct cb_trade *trade) {
+                            bool quick, struct cb_journal *journal, struct cb_trade *trade) {
   struct cb_trade made = {.scene = scene};
   struct cb_body own = {0};
   struct sweeper *s = calloc(1, sizeof *s);
   struct cb_outcome *truth = calloc(1, sizeof *truth);
   enum cb_status status = s && truth ? CB_OK : cb_fail_memory("the sweeps");
-  if (!status) *s = (struct sweeper){.trade = &made, .options = options, .quick = quick};
+  if (!status)
+    *s = (struct sweeper){.trade = &made, .options = options, .journal = journal, .quick = quick};
   cb_progress_begin("trade", 120);
   if (!status) status = cb_body_create(scene, 1, &own);
   if (!status) status = sweep_all(s, &own, truth);

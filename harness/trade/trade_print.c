@@ -13,7 +13,7 @@ struct cb_table *cb_trade_table(const struct cb_trade *trade) {
   struct cb_table *t = cb_table_create(
       "scene,sweep,model,storage,arithmetic,threads,iterations,step_s,resolution,tetrahedra,"
       "frame_iterations,frame_tolerance,lazy,seconds_per_second,displacement_error,torque,"
-      "energy_error,finite,front");
+      "energy_error,finite,front,session");
   for (size_t i = 0; t && i < trade->count; i++) {
     const struct cb_trade_row *r = &trade->rows[i];
     const struct cb_variant *v = r->trial.variant;
@@ -36,6 +36,7 @@ struct cb_table *cb_trade_table(const struct cb_trade *trade) {
     cb_table_number(t, r->energy);
     cb_table_integer(t, r->finite);
     cb_table_integer(t, r->front);
+    cb_table_integer(t, (long long)r->session);
   }
   return t;
 }

@@ -3,17 +3,20 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "harness/bench/bench.h"
 #include "harness/error.h"
+#include "harness/files/journal.h"
 #include "harness/progress.h"
 
 static const char doc[] =
     "Measure on this machine: the paper's figures, time of a step against iterations (4) and "
     "tetrahedra (7), convergence, memory and the linear ancestors; and how fast it can go: speed "
     "against the paper's method beside the error, the roofline, scaling with size and threads. "
-    "With --mesh, measure the variants on that mesh instead.";
+    "With --mesh, measure the variants on that mesh instead. What is finished is kept in "
+    "DIR/bench.unfinished until all is: --resume goes on with a run that was ended.";
 
 static const struct cb_bench_figure *const figures[] = {
     &cb_bench_memory,    &cb_bench_convergence, &cb_bench_figure4,  &cb_bench_figure7,
@@ -21,7 +24,7 @@ static const struct cb_bench_figure *const figures[] = {
 enum { FIGURES = sizeof figures / sizeof *figures };
 static const double FULL = 220, QUICK = 30; /* s; without --seconds */
 
-enum { KEY_FIGURE = 0x2000, KEY_QUICK, KEY_SECONDS };
+enum { KEY_FIGURE = 0x2000, KEY_QUICK, KEY_SECONDS, KEY_RESUME };
 static const struct argp_option own_options[] = {
     {"figure", KEY_FIGURE, "NAME", 0,
      "4, 7, convergence, memory, ancestors, speed, roofline or scaling; may be repeated (default: "
@@ -32,10 +35,11 @@ static const struct argp_option own_options[] = {
      "Time for measuring all figures (default 220, with --quick 30); more makes every sample "
      "steadier",
      0},
+    {"resume", KEY_RESUME, NULL, 0, "Go on with the run that was ended in DIR, if there is one", 0},
     {0}};
 
 struct request {
-  bool asked[FIGURES], any, quick;
+  bool asked[FIGURES], any, quick, resume;
   double seconds; /* 0: not given */
 };
 
@@ -57,6 +61,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case KEY_FIGURE: status = ask(request, text); break;
   case KEY_QUICK: request->quick = true; break;
+  case KEY_RESUME: request->resume = true; break;
   case KEY_SECONDS: status = cb_parse_number("--seconds", text, 1, 86400, &request->seconds); break;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -88,6 +93,11 @@ static enum cb_status check_timeable(const struct cb_options *options) {
                  options->globs[0]);
 }
 
+static enum cb_status run_whole(struct cb_bench *b, void *context) {
+  const struct cb_bench_figure *figure = context;
+  return figure->run(b, figure->share * b->seconds);
+}
+
 static enum cb_status measure(struct cb_bench *b, size_t count,
                               const struct cb_bench_figure *const *chosen) {
   double planned_s = 0;
@@ -98,7 +108,8 @@ static enum cb_status measure(struct cb_bench *b, size_t count,
   for (size_t i = 0; !status && i < count; i++) {
     b->done_s = planned_s;
     cb_progress(b->done_s, chosen[i]->name);
-    status = chosen[i]->run(b, chosen[i]->share * b->seconds);
+    status = chosen[i]->whole ? cb_bench_part(b, chosen[i]->name, run_whole, (void *)chosen[i])
+                              : chosen[i]->run(b, chosen[i]->share * b->seconds);
     planned_s += chosen[i]->share * b->seconds;
   }
   if (!status) cb_progress(planned_s, "done");
@@ -151,6 +162,40 @@ static enum cb_status print(const struct cb_bench *b, enum cb_format format, siz
   return CB_OK;
 }
 
+/* All that shapes the rows, for the journal. */
+static enum cb_status describe(const struct cb_bench *b, size_t count,
+                               const struct cb_bench_figure *const *chosen, char **text) {
+  const struct cb_options *o = b->options;
+  size_t size;
+  *text = NULL;
+  FILE *stream = open_memstream(text, &size);
+  if (!stream) return cb_fail_memory("the options");
+  fprintf(stream, "%sfigures", b->results.quick ? "quick, " : "");
+  for (size_t i = 0; i < count; i++) fprintf(stream, " %s", chosen[i]->name);
+  fprintf(stream, ", %g s, seed %lu, threads", b->seconds, o->seed);
+  for (size_t i = 0; i < b->threads.count; i++) fprintf(stream, " %zu", b->threads.of[i]);
+  for (size_t i = 0; i < o->glob_count; i++) fprintf(stream, ", variant %s", o->globs[i]);
+  if (o->mesh_path)
+    fprintf(stream, ", mesh %s %016llx", o->mesh_path,
+            (unsigned long long)cb_journal_digest(o->mesh_path));
+  return fclose(stream) == 0 ? CB_OK : cb_fail_memory("the options");
+}
+
+/* What is not finished already. */
+static enum cb_status measure_rest(struct cb_bench *b, bool resume, size_t count,
+                                   const struct cb_bench_figure *const *chosen) {
+  char *text;
+  enum cb_status status = describe(b, count, chosen, &text);
+  if (!status) status = cb_journal_open(b->results.directory, "bench", text, resume, &b->journal);
+  free(text);
+  if (status) return status;
+  b->results.session = cb_journal_session(b->journal);
+  status = measure(b, count, chosen);
+  if (!status) status = cb_results_write(&b->results);
+  if (!status) cb_journal_done(b->journal);
+  return status;
+}
+
 static enum cb_status run(int argc, char **argv) {
   struct request request = {0};
   struct cb_options options;
@@ -170,8 +215,9 @@ static enum cb_status run(int argc, char **argv) {
   const size_t count = choose(&request, &options, chosen);
   status = cb_bench_create(&options, request.quick, seconds, &b);
   if (status) return status;
-  status = measure(&b, count, chosen);
+  status = measure_rest(&b, request.resume, count, chosen);
   if (!status) status = print(&b, options.format, count, chosen);
+  status = cb_journal_close(b.journal, status);
   cb_bench_free(&b);
   return status;
 }

@@ -14,7 +14,7 @@ struct cb_verb {
 };
 extern const struct cb_verb cb_verb_list, cb_verb_verify, cb_verb_ops, cb_verb_force, cb_verb_bench,
     cb_verb_machine, cb_verb_scene, cb_verb_advise, cb_verb_trade, cb_verb_truth, cb_verb_run,
-    cb_verb_extremes;
+    cb_verb_extremes, cb_verb_frames, cb_verb_recovery;
 
 /* Options that several verbs share; a verb takes those of its mask. */
 enum {

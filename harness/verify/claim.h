@@ -33,6 +33,8 @@ cb_claim_fn cb_claim_order, cb_claim_newton, cb_claim_stale, cb_claim_scaling, c
 cb_claim_fn cb_claim_rotation, cb_claim_strain, cb_claim_flat, cb_claim_erratum;
 /* claims_counts.c */
 cb_claim_fn cb_claim_b_counts, cb_claim_df_counts;
+/* claims_recovery.c: inverted elements, let go */
+cb_claim_fn cb_claim_sign, cb_claim_vertex;
 /* claims_timing.c: on the paper's block */
 cb_claim_fn cb_claim_assembly, cb_claim_qr_speed, cb_claim_frames;
 /* claims_scenes.c: the scenes of figures 5 and 6 */

@@ -51,6 +51,14 @@ static const struct {
     {"C10",
      "QR is about 30 % faster per step than polar, 5 iterations, and stays so (4.2, figure 7)",
      cb_claim_qr_speed},
+    {"C11",
+     "polar without sign handling converges to the mirrored shape, a flip cures it, SVD is dearer "
+     "(4.1)",
+     cb_claim_sign},
+    {"C12",
+     "inversion by vertex d is plausible under QR, by another it recovers by a large rotation "
+     "(4.1)",
+     cb_claim_vertex},
     {"C13",
      "a rabbit crushed at zero stiffness regains its shape when it is raised (4.1, figure 5)",
      cb_claim_rabbit},

@@ -47,6 +47,7 @@ static enum cb_status measure_dense(struct cb_law_session *s, bool semidefinite)
     for (size_t i = 0; i < d; i++) /* the quadratic form sees the symmetric part */
       for (size_t j = 0; j < i; j++) A[i * d + j] = (A[i * d + j] + A[j * d + i]) / 2;
     status = cb_oracle_eigenvalues(d, A, eigen);
+    if (status == CB_MEMORY) cb_fail_memory("the laws");
     s->value[n] = fmax(0, -eigen[0]) / fmax(-eigen[0], eigen[d - 1]);
   }
   free(K);
