@@ -42,7 +42,8 @@ static enum cb_status run_density(const struct cb_bench_scene *s, struct cb_extr
   if (!status) {
     cb_stepper_step(job.stepper, job.x, job.v, NULL);
     const struct cb_ended ended = cb_stepper_ended(job.stepper);
-    row->finite = cb_job_finite(&job, job.x, work) && cb_job_finite(&job, job.v, work);
+    row->finite = ended.why != CB_ENDED_OVERFLOW && cb_job_finite(&job, job.x, work) &&
+                  cb_job_finite(&job, job.v, work);
     snprintf(row->note, sizeof row->note, "%s after %zu iterations",
              ended.why == CB_ENDED_SOLVED       ? "solved to rounding"
              : ended.why == CB_ENDED_ITERATIONS ? "not solved to rounding"
