@@ -78,7 +78,7 @@ static bool is_tested(const struct cb_variant *v, bool ortho) {
          v->storage != CB_BCSR_SYMMETRIC && v->model->form[v->storage][ortho].update;
 }
 
-/* What the derivative of a force that is bounded by a hundredth may have: turning, over
+/* What the derivative of a force that is bounded by a thousandth may have: turning, over
  * stretches of a thousandth at least. */
 static bool is_derivative(const char *name) { return strncmp(name, "polar-tangent", 13) == 0; }
 

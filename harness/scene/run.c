@@ -86,6 +86,7 @@ static void look(struct cb_way *w, struct cb_outcome *o, size_t sample) {
     kinetic += at->mass[i / 3] / 2 * w->v[i] * w->v[i];
   o->energy[sample] = kinetic + cb_elastic_energy(&at->mesh, &w->material, w->x, &o->inverted);
   o->distance = cb_body_distance(w->body, w->x);
+  if (!isfinite(o->energy[sample]) || !isfinite(o->distance)) o->finite = false;
   if (o->inverted > o->most_inverted) o->most_inverted = o->inverted;
   o->most_distance = larger(o->distance, o->most_distance);
 }
