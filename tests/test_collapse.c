@@ -111,7 +111,7 @@ static void of_size(double size, double most_allowed) {
 /* Unit size, moduli up to 2600 Pa. */
 static void collapsed_elements_push_within_bounds(void **state) {
   (void)state;
-  of_size(1, 1e6);
+  of_size(1, 1e7);
 }
 
 /* Green's force is a cube: beyond float from 1e12 on. */

@@ -63,7 +63,7 @@ INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
  *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
  *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11
  * Where an edge or a face collapses W has no limit and its gradient no bound: divided by
- * a thousandth at least. */
+ * a thousandth at least, which below that leaves a ghost torque. */
 INLINE void qr_gradient(const T *U, T *P) {
   T least = LIT(1e-3);
   T first = LIT(1) / SELECT(U[0] > least, U[0], least);
