@@ -75,7 +75,9 @@ INLINE int ANY(MASK m) { return m; }
 typedef int WHOLES, CHOICE;
 INLINE WHOLES load_bytes(const uint8_t *b) { return *b; }
 #define EQUAL(w, n) ((w) == (n))
+#define LESS(a, b) ((a) < (b))
 #define CHOOSE SELECT
+INLINE int ALL(CHOICE m) { return m; }
 #else
 typedef S T __attribute__((vector_size(sizeof(S) * CB_LANES)));
 typedef __typeof__((T){0} < (T){0}) MASK;
@@ -91,8 +93,9 @@ INLINE T SQRT(T a) {
   return t;
 }
 INLINE T SELECT(MASK m, T a, T b) { return (T)((m & (MASK)a) | (~m & (MASK)b)); }
-/* WHOLES: a whole number a lane, from LANES bytes; CHOICE: what EQUAL makes of one and
- * CHOOSE takes for a mask, in the registers that the processor has for that. */
+/* WHOLES: a whole number a lane, from LANES bytes; CHOICE: what EQUAL makes of one, LESS of
+ * numbers, and CHOOSE and ALL take for a mask, in the registers that the processor has for
+ * that. */
 typedef MASK WHOLES;
 #if CB_BYTES == 64 && defined __AVX512F__ && CB_IS(float)
 typedef __mmask16 CHOICE;
@@ -100,14 +103,18 @@ INLINE WHOLES load_bytes(const uint8_t *b) {
   return (WHOLES)_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)b));
 }
 #define EQUAL(w, n) _mm512_cmpeq_epi32_mask((__m512i)(w), _mm512_set1_epi32(n))
+#define LESS(a, b) _mm512_cmp_ps_mask((__m512)(a), (__m512)(b), _CMP_LT_OQ)
 #define CHOOSE(m, a, b) ((T)_mm512_mask_blend_ps(m, (__m512)(b), (__m512)(a)))
+INLINE int ALL(CHOICE m) { return m == 0xffff; }
 #elif CB_BYTES == 64 && defined __AVX512F__
 typedef __mmask8 CHOICE;
 INLINE WHOLES load_bytes(const uint8_t *b) {
   return (WHOLES)_mm512_cvtepu8_epi64(_mm_loadl_epi64((const __m128i *)b));
 }
 #define EQUAL(w, n) _mm512_cmpeq_epi64_mask((__m512i)(w), _mm512_set1_epi64(n))
+#define LESS(a, b) _mm512_cmp_pd_mask((__m512d)(a), (__m512d)(b), _CMP_LT_OQ)
 #define CHOOSE(m, a, b) ((T)_mm512_mask_blend_pd(m, (__m512d)(b), (__m512d)(a)))
+INLINE int ALL(CHOICE m) { return m == 0xff; }
 #else
 typedef MASK CHOICE;
 INLINE WHOLES load_bytes(const uint8_t *b) {
@@ -116,7 +123,17 @@ INLINE WHOLES load_bytes(const uint8_t *b) {
   return w;
 }
 #define EQUAL(w, n) ((w) == (n))
+#define LESS(a, b) ((a) < (b))
 #define CHOOSE SELECT
+#if CB_BYTES == 32 && defined __AVX2__
+INLINE int ALL(CHOICE m) { return _mm256_movemask_epi8((__m256i)m) == -1; }
+#else
+INLINE int ALL(CHOICE m) {
+  int all = 1;
+  for (int l = 0; l < LANES; l++) all &= m[l] != 0;
+  return all;
+}
+#endif
 #endif
 #if CB_BYTES == 64 && defined __AVX512F__
 INLINE int ANY(MASK m) { return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0; }
@@ -165,6 +182,12 @@ INLINE T RSQRT(T a) { return LIT(1) / SQRT(a); }
 INLINE T ROUGH_SQRT(T a) { return SQRT(a); }
 #endif
 
-INLINE T ABS(T a) { return SELECT(a < LIT(0), -a, a); }
+#if CB_LANES == 1
+INLINE T ABS(T a) {
+  return sizeof(S) == 4 ? (T)fabsf((float)a) : sizeof(S) == 8 ? (T)fabs((double)a) : a < 0 ? -a : a;
+}
+#else
+INLINE T ABS(T a) { return (T)((MASK)a & ~(MASK)LIT(-0.0)); }
+#endif
 
 #endif

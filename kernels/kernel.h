@@ -227,7 +227,7 @@ void cb_operator_blocks(const struct cb_operator *op, double *blocks);
 struct cb_step_parameters {
   double h;           /* s */
   double alpha, beta; /* Rayleigh damping: s, 1/s */
-  size_t iterations;  /* of conjugate gradients, always all of them */
+  size_t iterations;  /* of conjugate gradients; see cb_stepper_ended */
 };
 static inline double cb_step_scale(const struct cb_step_parameters *p) {
   return p->h * (p->h + p->alpha);
@@ -248,6 +248,26 @@ void cb_stepper_step(struct cb_stepper *s, void *x, void *v, const void *f_ext);
 void cb_stepper_right_side(struct cb_stepper *s, const void *x, const void *v, const void *f_ext);
 void cb_stepper_solve(struct cb_stepper *s);
 void cb_stepper_advance(struct cb_stepper *s, void *x, void *v);
+
+/* Why conjugate gradients stopped, and after how many steps. Whatever the operator and
+ * the right-hand side, dv is finite, and the quadratic form 1/2 dv.A dv - b.dv, which each
+ * step lessens, is not above its value for dv = 0. Nodes without mass and stiffness that
+ * carry a load are found at the latest when all else is solved; their dv means nothing. */
+enum cb_ending {
+  CB_ENDED_ITERATIONS, /* all that were asked for */
+  CB_ENDED_SOLVED,     /* the residual is zero to rounding; the other iterations run, for equal
+                          times, and change nothing */
+  CB_ENDED_INDEFINITE, /* p.A p <= 0, or nothing beside an earlier one: A is not positive
+                          definite to rounding. dv is what was there before; in the first
+                          iteration b times b.b / max(|b.A b|, b.M b) */
+  CB_ENDED_OVERFLOW    /* b, p.A p or dv would not be finite: dv is what was there before, or 0 */
+};
+struct cb_ended {
+  enum cb_ending why;
+  size_t iterations; /* that changed dv */
+};
+/* Of the last cb_stepper_solve or cb_stepper_step; no iterations before the first. */
+struct cb_ended cb_stepper_ended(const struct cb_stepper *s);
 /* Right-hand side and last solution (node vectors of the arithmetic). */
 const void *cb_stepper_b(const struct cb_stepper *s);
 const void *cb_stepper_dv(const struct cb_stepper *s);

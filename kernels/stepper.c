@@ -59,6 +59,10 @@ void cb_stepper_advance(struct cb_stepper *s, void *x, void *v) {
   run((struct work){.s = s, .advance = true, .next_x = x, .next_v = v});
 }
 
+struct cb_ended cb_stepper_ended(const struct cb_stepper *s) {
+  return s->ended;
+}
+
 const void *cb_stepper_b(const struct cb_stepper *s) { return s->vector[STEPPER_B]; }
 
 const void *cb_stepper_dv(const struct cb_stepper *s) { return s->vector[STEPPER_DV]; }

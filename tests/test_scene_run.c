@@ -180,12 +180,28 @@ static void the_truth_is_the_limit(void **state) {
   cb_body_free(&b);
 }
 
+static void what_is_not_finite_is_refused(void **state) {
+  (void)state;
+  const double bad[] = {NAN, INFINITY, -INFINITY};
+  struct cb_body b;
+  for (int n = 0; n < 3; n++)
+    for (int where = 0; where < 4; where++) {
+      struct cb_scene s = plain();
+      *(where == 0   ? s.velocity
+        : where == 1 ? s.spin + 1
+        : where == 2 ? s.gravity + 2
+                     : s.stretch) = bad[n];
+      assert_int_equal(cb_body_create(&s, 1, &b), CB_INPUT);
+      assert_non_null(strstr(cb_error_message(), "not a finite number"));
+    }
+}
+
 static void a_broken_run_is_an_outcome(void **state) {
   (void)state;
   struct cb_scene s = plain();
   struct cb_body b;
   static struct cb_outcome o, truth;
-  s.velocity[0] = INFINITY;
+  s.velocity[0] = 1e300; /* finite, its square is not */
   assert_int_equal(cb_body_create(&s, 1, &b), CB_OK);
   const struct cb_trial t = trial("qr-updated/ebe/f64", 5);
   assert_int_equal(cb_body_run(&b, &t, &o), CB_OK);
@@ -391,6 +407,7 @@ int main(void) {
       cmocka_unit_test(handles_end_where_they_should),
       cmocka_unit_test(solved_directly_is_iterated_to_the_end),
       cmocka_unit_test(the_truth_is_the_limit),
+      cmocka_unit_test(what_is_not_finite_is_refused),
       cmocka_unit_test(a_broken_run_is_an_outcome),
       cmocka_unit_test(what_is_absent_costs_nothing),
       cmocka_unit_test(shipped_scenes_run),

@@ -121,16 +121,20 @@ struct cb_job {
   size_t vector_bytes;
   void *start_x, *start_v, *x, *v; /* node vectors of the arithmetic */
   double setup_s;
-  bool lost; /* a position was not finite after the steps: no time counts */
+  bool lost; /* a position was not finite after the steps, or the conjugate gradients of
+                one ended before their iterations: no time counts */
 };
 /* CB_MEMORY. */
 enum cb_status cb_job_create(const struct cb_variant *v, size_t threads,
                              const struct cb_bench_scene *scene,
                              const struct cb_step_parameters *step, struct cb_job *job);
 void cb_job_free(struct cb_job *job); /* zeroed is allowed */
-/* What a timer prepares and runs (cb_subject): back to the start; so many steps. */
+/* What a timer prepares and runs (cb_subject): back to the start; so many steps, which set
+ * `lost`. */
 void cb_job_restore(void *job);
 void cb_job_steps(void *job, size_t repeats);
+/* Is a node vector of the job finite? work[3*nodes]. */
+bool cb_job_finite(const struct cb_job *job, const void *vector, double *work);
 
 struct cb_block;
 

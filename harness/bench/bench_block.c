@@ -80,8 +80,7 @@ static void restore_right_side(void *context) {
 
 static void run_steps(void *context, size_t repeats) {
   const struct work *work = context;
-  for (size_t i = 0; i < repeats; i++)
-    cb_stepper_step(work->job->stepper, work->job->x, work->job->v, NULL);
+  cb_job_steps(work->job, repeats);
 }
 
 static void run_update(void *context, size_t repeats) {
@@ -186,8 +185,7 @@ static enum cb_status find_lost(struct cb_block *block) {
   if (!x) return cb_fail_memory("the check of the state");
   for (size_t j = 0; j < block->job_count; j++) {
     struct cb_job *job = &block->jobs[j];
-    job->variant->arithmetic->to_double(nodes, job->x, x);
-    for (size_t i = 0; i < 3 * nodes && !job->lost; i++) job->lost = !isfinite(x[i]);
+    job->lost = job->lost || !cb_job_finite(job, job->x, x);
   }
   free(x);
   return CB_OK;
@@ -203,7 +201,8 @@ static enum cb_status add_row(struct cb_bench *b, const struct cb_block *block, 
   row.bytes_per_tetrahedron = (double)cb_operator_bytes(job->op) / (double)row.tetrahedra;
   row.setup_s = job->setup_s;
   if (job->lost) {
-    snprintf(row.status, sizeof row.status, "failed: positions are not finite after the steps");
+    snprintf(row.status, sizeof row.status,
+             "failed: the steps end early or leave the finite numbers");
     return cb_results_add_row(&b->results, &row);
   }
   enum cb_status status = CB_OK;

@@ -70,6 +70,7 @@ static enum cb_status add_curve(struct cb_bench *b, const struct cb_bench_scene 
     cb_stepper_right_side(job->stepper, job->x, job->v, NULL);
     cb_stepper_solve(job->stepper);
     a->to_double(nodes, cb_stepper_dv(job->stepper), dv);
+    if (cb_stepper_ended(job->stepper).why == CB_ENDED_OVERFLOW) dv[0] = NAN;
     struct cb_convergence point = {.tetrahedra = scene->mesh.tets,
                                    .iterations = ITERATIONS[c],
                                    .h = h,

@@ -1,6 +1,7 @@
 /* A variant on the scene, ready to step.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,5 +75,17 @@ void cb_job_restore(void *job) {
 
 void cb_job_steps(void *job, size_t repeats) {
   struct cb_job *j = job;
-  for (size_t i = 0; i < repeats; i++) cb_stepper_step(j->stepper, j->x, j->v, NULL);
+  for (size_t i = 0; i < repeats; i++) {
+    cb_stepper_step(j->stepper, j->x, j->v, NULL);
+    const enum cb_ending why = cb_stepper_ended(j->stepper).why;
+    j->lost |= why == CB_ENDED_INDEFINITE || why == CB_ENDED_OVERFLOW;
+  }
+}
+
+bool cb_job_finite(const struct cb_job *job, const void *vector, double *work) {
+  const size_t nodes = cb_operator_nodes(job->op);
+  job->variant->arithmetic->to_double(nodes, vector, work);
+  for (size_t i = 0; i < 3 * nodes; i++)
+    if (!isfinite(work[i])) return false;
+  return true;
 }

@@ -53,8 +53,13 @@ static void evaluate(struct cb_job *job, size_t nodes, double *force, double *x)
   memcpy(job->x, job->start_x, job->vector_bytes);
   memcpy(job->v, job->start_v, job->vector_bytes);
   cb_stepper_set_iterations(job->stepper, ITERATIONS[0]);
-  for (int i = 0; i < STEPS; i++) cb_stepper_step(job->stepper, job->x, job->v, NULL);
+  bool finite = true;
+  for (int i = 0; i < STEPS; i++) {
+    cb_stepper_step(job->stepper, job->x, job->v, NULL);
+    finite = finite && cb_stepper_ended(job->stepper).why != CB_ENDED_OVERFLOW;
+  }
   a->to_double(nodes, job->x, x);
+  if (!finite) x[0] = NAN; /* was kept out of the positions */
   memcpy(job->x, job->start_x, job->vector_bytes);
   memcpy(job->v, job->start_v, job->vector_bytes);
 }

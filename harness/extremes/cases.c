@@ -11,7 +11,7 @@
 #include "harness/progress.h"
 
 enum cb_status cb_cases_create(size_t count, bool unit, struct cb_cases *c) {
-  struct cb_cases made = {.count = count, .young = 1000, .unit = unit};
+  struct cb_cases made = {.count = count, .young = 1000, .poisson = 0.3, .unit = unit};
   made.X = calloc(count, 24 * sizeof *made.X);
   if (!made.X) return cb_fail_memory("the elements of a sweep");
   made.x = made.X + 12 * count;
@@ -32,7 +32,7 @@ enum cb_status cb_cases_open(const struct cb_variant *v, const struct cb_cases *
   uint32_t *tet = malloc(4 * c->count * sizeof *tet);
   struct cb_mesh mesh = {
       .nodes = 4 * c->count, .tets = c->count, .X = c->X, .tet = tet, .share = 1};
-  enum cb_status status = tet ? cb_material_isotropic(c->young, 0.3, 1000, &material)
+  enum cb_status status = tet ? cb_material_isotropic(c->young, c->poisson, 1000, &material)
                               : cb_fail_memory("the elements of a sweep");
   for (uint32_t i = 0; tet && i < 4 * c->count; i++) tet[i] = i;
   if (!status) status = cb_probe_open(v, &mesh, &material, probe);

@@ -16,10 +16,10 @@
 /* Element n has the nodes 4n to 4n + 3 to itself. */
 struct cb_cases {
   size_t count;
-  double *X, *x; /* [12*count] vertices at rest and now, m */
-  double young;  /* Pa; Poisson's ratio is 0.3, density 1000 kg/m^3 */
-  bool unit;     /* a = 0, and at rest the edges are the unit vectors: then those of now
-                    are F, and frames are judged */
+  double *X, *x;         /* [12*count] vertices at rest and now, m */
+  double young, poisson; /* Pa, 1; 1000 and 0.3 unless changed; density 1000 kg/m^3 */
+  bool unit;             /* a = 0, and at rest the edges are the unit vectors: then those of now
+                            are F, and frames are judged */
 };
 /* x zero, X zero or (unit) filled. CB_MEMORY, recorded. */
 enum cb_status cb_cases_create(size_t count, bool unit, struct cb_cases *c);

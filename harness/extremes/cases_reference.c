@@ -116,7 +116,7 @@ static enum cb_status know_forces(const struct cb_variant *v, gsl_rng *rng,
   double *f = malloc(2 * (TRIALS + 1) * length * sizeof *f), *y = f + (TRIALS + 1) * length;
   enum cb_status status = f ? CB_OK : cb_fail_memory("the forces in quad precision");
   if (!status) status = cb_cases_create(count, r->cases.unit, &moved);
-  moved.young = r->cases.young;
+  moved.young = r->cases.young, moved.poisson = r->cases.poisson;
   if (!status) status = run(counted, &r->cases, r->u, f, y);
   for (size_t t = 1; !status && t <= TRIALS; t++) {
     move(rng, r->roundoff, &r->cases, &moved);
@@ -147,7 +147,7 @@ enum cb_status cb_reference_create(const struct cb_variant *v, const struct cb_c
   if (!status && !(rng && made.u && made.known)) status = cb_fail_memory("the exact answers");
   if (status) goto done;
   gsl_rng_set(rng, seed);
-  made.cases.young = cases->young;
+  made.cases.young = cases->young, made.cases.poisson = cases->poisson;
   for (size_t i = 0; i < 12 * cases->count; i++) {
     made.cases.X[i] = single ? (float)cases->X[i] : cases->X[i];
     made.cases.x[i] = single ? (float)cases->x[i] : cases->x[i];

@@ -32,6 +32,8 @@ enum cb_status cb_extremes_add(struct cb_extremes *all, const struct cb_extreme 
 
 void cb_extremes_free(struct cb_extremes *all) {
   free(all->row);
+  cb_table_free(all->steps);
+  all->steps = NULL;
   all->row = NULL, all->count = all->room = 0;
 }
 

@@ -5,7 +5,7 @@
 #ifndef CB_EXTREMES_H
 #define CB_EXTREMES_H
 
-#include "kernels/kernel.h"
+#include "harness/files/table.h"
 
 /* One model at one extreme. What a sweep does not measure is NaN and printed as nothing;
  * what is not finite is said by `finite`. Errors are against quad precision, in units of
@@ -29,6 +29,7 @@ struct cb_extremes {
   const struct cb_variant *const *variants; /* NULL-terminated */
   size_t count, room;
   struct cb_extreme *row;
+  struct cb_table *steps; /* what the sweep of steps says in columns of its own; else NULL */
 };
 
 /* Append a row. CB_MEMORY, recorded. */

@@ -89,6 +89,7 @@ static enum cb_status step(const struct cb_variant *v, const struct cb_cases *c,
     a->from_double(mesh.nodes, none, velocity);
     cb_stepper_step(stepper, x, velocity, NULL);
     a->to_double(mesh.nodes, cb_stepper_dv(stepper), dv);
+    if (cb_stepper_ended(stepper).why == CB_ENDED_OVERFLOW) dv[0] = NAN; /* was kept out of dv */
   }
   cb_stepper_free(stepper);
   cb_operator_free(op);

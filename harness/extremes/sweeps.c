@@ -15,7 +15,12 @@
   X(sliver)                                                                                        \
   X(aspect)                                                                                        \
   X(offset)                                                                                        \
-  X(units)
+  X(units)                                                                                         \
+  X(materials)                                                                                     \
+  X(contrast)                                                                                      \
+  X(steps)                                                                                         \
+  X(breakdown)                                                                                     \
+  X(inputs)
 
 #define DECLARE(name) extern const struct cb_sweep cb_sweep_##name;
 #define LIST(name) &cb_sweep_##name,

@@ -112,6 +112,10 @@ static void let_go(struct way *w, struct cb_recovery *r) {
       if ((n > 0 && still(w)) || !(r->distance <= CB_RECOVERY_FAR)) break;
     }
     cb_stepper_step(w->job.stepper, w->job.x, w->job.v, NULL);
+    if (cb_stepper_ended(w->job.stepper).why == CB_ENDED_OVERFLOW) {
+      r->lost = (double)(n + 1) * h; /* kept out of the body, which would only seem to stay */
+      break;
+    }
   }
   if (!isnan(r->lost)) r->back = r->mirrored = 0, r->distance = r->turn = NAN;
   if (r->back == 1) r->time = (double)(away + 1) * h;

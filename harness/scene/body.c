@@ -241,11 +241,33 @@ static enum cb_status fill(struct cb_body *b, double resolution) {
   return find_points(b, resolution);
 }
 
+static bool all_finite(size_t n, const double *a) {
+  for (size_t i = 0; i < n; i++)
+    if (!isfinite(a[i])) return false;
+  return true;
+}
+
+/* What a scene asks for may be no number, or become none: nothing such is passed on. */
+static enum cb_status check(const struct cb_body *b) {
+  const struct cb_bench_scene *at = &b->at;
+  const size_t length = 3 * at->mesh.nodes;
+  const char *what = !all_finite(length, at->mesh.X)                   ? "a place at rest"
+                     : !all_finite(at->mesh.nodes, at->mass)           ? "a mass"
+                     : b->external && !all_finite(length, b->external) ? "a load"
+                     : !all_finite(length, at->x)                      ? "a place at the start"
+                     : !all_finite(length, at->v)                      ? "a velocity"
+                                                                       : NULL;
+  if (!what) return CB_OK;
+  return cb_fail(CB_INPUT, "scene '%s': %s is not a finite number; correct what it is made of",
+                 b->scene->name, what);
+}
+
 enum cb_status cb_body_create(const struct cb_scene *scene, double resolution,
                               struct cb_body *body) {
   struct cb_body made = {.scene = scene};
   enum cb_status status = make_mesh(scene, resolution, &made.at.mesh);
   if (!status) status = fill(&made, resolution);
+  if (!status) status = check(&made);
   if (status)
     cb_body_free(&made);
   else

@@ -28,7 +28,8 @@ struct cb_body {
 
 /* resolution: of a generated mesh, cells for each one of the scene's (0.5: half as
  * many along each edge; at least one); a mesh file is taken as it is: 1. The scene is
- * kept. CB_INPUT, recorded: a selection without nodes, an unreadable mesh; CB_IO,
+ * kept. CB_INPUT, recorded: a selection without nodes, an unreadable mesh, a number
+ * that is not finite; CB_IO,
  * CB_MEMORY. */
 enum cb_status cb_body_create(const struct cb_scene *scene, double resolution,
                               struct cb_body *body);

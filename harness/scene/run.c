@@ -97,7 +97,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static enum cb_status step_once(struct cb_way *w, size_t n) {
+static enum cb_status step_once(struct cb_way *w, size_t n, struct cb_outcome *o) {
   enum cb_status status = cb_way_change(w, n);
   if (status) return status;
   if (w->body->scene->handle_count) move_handles(w, (double)(n + 1) * w->step.h);
@@ -107,6 +107,11 @@ static enum cb_status step_once(struct cb_way *w, size_t n) {
   else
     cb_stepper_step(w->job.stepper, w->job.x, w->job.v, w->external);
   w->time[n] = cb_timer_now() - begin;
+  if (!w->direct) {
+    const enum cb_ending why = cb_stepper_ended(w->job.stepper).why;
+    o->indefinite += why == CB_ENDED_INDEFINITE;
+    if (why == CB_ENDED_OVERFLOW) o->finite = false;
+  }
   if (w->touching) cb_way_land(w);
   if (cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted while simulating");
   return status;
@@ -142,7 +147,7 @@ enum cb_status cb_body_show(const struct cb_body *body, const struct cb_trial *t
   const size_t between = w.steps / CB_SAMPLES;
   if (!status) status = show(&w, watch, 0);
   while (!status && o.finite && done < w.steps) {
-    status = step_once(&w, done++);
+    status = step_once(&w, done++, &o);
     if (!status && done % between == 0) look(&w, &o, done / between - 1);
     if (!status) status = show(&w, watch, done);
   }

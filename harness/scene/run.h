@@ -27,6 +27,8 @@ struct cb_outcome {
   size_t inverted;                         /* elements in the end ... */
   size_t most_inverted;                    /* ... and at the look with the most */
   double distance, most_distance;          /* cb_body_distance, likewise, 1 */
+  size_t indefinite;                       /* steps whose conjugate gradients found the operator
+                                              not positive definite (cb_stepper_ended) */
   size_t steps;
   double step_s;  /* median time of a step; handles, changes and looks are not in it */
   double seconds; /* of step_s, for a simulated second */

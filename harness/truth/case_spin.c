@@ -91,6 +91,8 @@ static enum cb_status fly(const char *model, struct flight *f) {
   if (!status) totals(&s, p0, l0, &e0);
   for (size_t n = 1, look = 0; !status && look < LOOKS; n++) {
     cb_stepper_step(stepper, s.x, s.v, NULL);
+    /* kept out of the body, which would fly on with every momentum it had */
+    if (cb_stepper_ended(stepper).why == CB_ENDED_OVERFLOW) s.v[0] = NAN;
     if (n == AT[look]) {
       totals(&s, p, l, &e);
       const double lost[3] = {p[0] - p0[0], p[1] - p0[1], p[2] - p0[2]};

@@ -15,10 +15,10 @@ static const char doc[] =
     "Drive each model to the extremes and say where it is finite, right and keeps the laws that it "
     "claims, against quad precision. Without --variant: every model by ebe in f64 and f32, scalar "
     "and in the widest lanes of this processor. Exit status 1 when a row is not finite or breaks a "
-    "law. With --output, write extremes.csv and extremes.json (all rows) extremes-map.csv (the "
-    "worst "
-    "of each model, arithmetic and sweep, and where it was met first) and extremes-paths.csv "
-    "(frames and forces of elements that are turned inside out)."
+    "law. With --output, write extremes.csv and extremes.json (all rows), extremes-map.csv (the "
+    "worst of each model, arithmetic and sweep, and where it was met first), extremes-paths.csv "
+    "(frames and forces of elements that are turned inside out) and extremes-steps.csv (the "
+    "largest stable steps, a million steps)."
     "\vAn error is in roundings of the arithmetic times the condition of the exact answer; above "
     "1000 it is inaccurate. Not judged: the exact answer is no number of the arithmetic, or the "
     "method has none there.";
@@ -59,6 +59,8 @@ static enum cb_status write_files(const struct cb_extremes *all, const char *dir
   if (!status) status = cb_output_table(directory, "extremes.csv", rows, CB_CSV);
   if (!status) status = cb_output_table(directory, "extremes.json", rows, CB_JSON);
   if (!status) status = cb_output_table(directory, "extremes-map.csv", map, CB_CSV);
+  if (!status && all->steps)
+    status = cb_output_table(directory, "extremes-steps.csv", all->steps, CB_CSV);
   if (!status) status = cb_output_table(directory, "extremes-paths.csv", paths, CB_CSV);
   if (!status) status = cb_environment_footer(directory, "extremes-footer.txt");
   cb_table_free(rows);

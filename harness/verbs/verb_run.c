@@ -93,7 +93,7 @@ static void print_one(const struct cb_body *body, const char *name, const struct
   printf("%s by %s, %lu iterations: %zu steps, %.3g us each, %.3g of real time.\n",
          body->scene->name, name, r->iterations, o->steps, 1e6 * o->step_s, o->seconds);
   if (!o->finite) {
-    printf("It breaks down: positions are not finite.\n");
+    printf("It breaks down: forces, velocities or positions are not finite.\n");
     return;
   }
   printf("In the end %zu of %zu elements are inverted, at most %zu; ghost torque up to %.2g, net "
@@ -104,6 +104,10 @@ static void print_one(const struct cb_body *body, const char *name, const struct
          !isfinite(needs->rest)          ? ""
          : cb_outcome_recovers(o, needs) ? " It recovers."
                                          : " It does not recover.");
+  if (o->indefinite)
+    printf("In %zu steps the operator was not positive definite: conjugate gradients ended early "
+           "there.\n",
+           o->indefinite);
 }
 
 static void add_row(struct cb_table *t, const struct cb_body *body, const char *name,

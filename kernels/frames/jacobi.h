@@ -1,5 +1,5 @@
 /* jacobi.h - one plane rotation of Jacobi's method, the eigenvectors of a
- * symmetric 3x3 matrix by a fixed number of them, and a frame made of such.
+ * symmetric 3x3 matrix by a fixed number of them, and their order.
  * Source: Golub & Van Loan, Matrix Computations, 3rd ed., sections 8.4 and 5.1.13:
  *         fast rotations, [1 -u; t 1] without their length.
  *
@@ -43,6 +43,14 @@ INLINE void jacobi_columns(T *A, int j, int k, T t, T u) {
 
 INLINE T column_square(const T *A, int j) {
   return A[j] * A[j] + A[3 + j] * A[3 + j] + A[6 + j] * A[6 + j];
+}
+
+/* Columns j, k of A = F V, and with them V, turned until orthogonal (Hestenes 1958). */
+INLINE void jacobi_columns_turn(T *A, T *V, T *e, int j, int k) {
+  T t, u, r = A[j] * A[k] + A[3 + j] * A[3 + k] + A[6 + j] * A[6 + k];
+  jacobi_turn(column_square(A, j), column_square(A, k), r, j, k, e, &t, &u);
+  jacobi_columns(A, j, k, t, u);
+  jacobi_columns(V, j, k, t, u);
 }
 
 /* V[9] := V with columns of length 1, by[j] what column j has been multiplied by. */
@@ -94,26 +102,11 @@ INLINE void principal_swap(MASK m, T *n, T *A, T *V, int j, int k) {
   }
 }
 
-/* R := U V^T, det R = +1, from A = F V = U diag(s): the two longest columns of A
- * give two axes, their cross product the third, and with it the sign of the
- * smallest singular value. Nothing is divided by that value.
- * in/out  n[3] squared lengths of F V's columns, A[9] the same columns but for
- *         positive factors, V[9] rotation: sorted
- * fail    rank A < 2: NaN in that lane */
-INLINE void frame_from_principal(T *n, T *A, T *V, T *R) {
-  T U[9], u[3], v[3], w[3], along = LIT(0);
+/* Columns of A and V so that n[0] >= n[1] >= n[2]. */
+INLINE void principal_sort(T *n, T *A, T *V) {
   principal_swap(n[0] < n[1], n, A, V, 0, 1);
   principal_swap(n[1] < n[2], n, A, V, 1, 2);
   principal_swap(n[0] < n[1], n, A, V, 0, 1);
-  T inverse = RSQRT(column_square(A, 0));
-  for (int i = 0; i < 3; i++) u[i] = A[3 * i] * inverse;
-  for (int i = 0; i < 3; i++) along = along + u[i] * A[3 * i + 1];
-  for (int i = 0; i < 3; i++) v[i] = A[3 * i + 1] - along * u[i];
-  inverse = RSQRT(dot3(v, v));
-  for (int i = 0; i < 3; i++) v[i] = v[i] * inverse;
-  cross3(u, v, w);
-  for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = w[i];
-  multiply3_nt(U, V, R);
 }
 
 #endif

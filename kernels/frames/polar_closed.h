@@ -2,9 +2,9 @@
  * and the nearest rotation made of it.
  * Source: Hoger & Carlson 1984: Q by Cayley-Hamilton from F and tr S; the product
  *         form below and the iteration for tr S: this project.
- * Trade:  the cheapest nearest rotation, no sum cancels; but a needle s_1 : s_2
- *         gives a matrix that is orthogonal to rounding only up to 100 : 1 in
- *         float, 10000 : 1 in double. det F < 0 costs an eigenvector.
+ * Trade:  the cheapest nearest rotation, no sum cancels; but of a needle s_1 : s_2 it
+ *         is orthogonal to rounding only up to 100 : 1 in float, 1000 : 1 in double,
+ *         and beyond costs a decomposition. det F < 0 costs an eigenvector.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_FRAME_POLAR_CLOSED_H
@@ -31,13 +31,17 @@ INLINE void stretch_invariants(T n, T m, T d, T *I1, T *I2) {
 
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns det Q,
  * +1 or -1.
- * in   F[9]  row-major, 1
- * fail       rank F < 2: NaN in that lane */
-INLINE T orthogonal_closed(const T *F, T *Q) {
+ * in   F[9]    row-major, 1
+ * out  *usual  where Q is that to rounding: F is neither too small nor too large for
+ *              the powers of it that are formed, and no needle */
+INLINE T closed_factor(const T *F, T *Q, CHOICE *usual) {
   T C[9], X[9], I1, I2;
   cofactor3(F, C);
   T det = dot3(F, C), sign = SELECT(det < LIT(0), LIT(-1), LIT(1)), d = sign * det;
-  stretch_invariants(square9(F), square9(C), d, &I1, &I2);
+  T n = square9(F);
+  stretch_invariants(n, square9(C), d, &I1, &I2);
+  *usual = within(n, BY_PRECISION(1e-12, 1e-40), BY_PRECISION(1e13, 1e40)) &
+           LESS(BY_PRECISION(1e-2, 1e-3) * n, I2);
   /* det F > 0: Q = F / I1 + cof(F + C / I1) / (I2 - d / I1); in the axes of S,
    * where s_1 -> s_1 / I1 + (s_2 + s_3 s_1 / I1)(s_3 + s_1 s_2 / I1) / ..., all
    * terms are positive. det F < 0: the same of -F. */
@@ -54,10 +58,19 @@ INLINE T orthogonal_closed(const T *F, T *Q) {
   return sign;
 }
 
+/* Q := orthogonal polar factor of F, a reflection where det F < 0. */
+INLINE void orthogonal_closed(const T *F, T *Q) {
+  CHOICE usual;
+  (void)closed_factor(F, Q, &usual);
+  repair(usual, F, true, Q);
+}
+
 /* R := nearest rotation to F, an inversion moved to the smallest singular value. */
 INLINE void frame_polar_closed(const T *F, T *R) {
-  T Q[9], sign = orthogonal_closed(F, Q);
-  rotation_of_orthogonal(F, Q, sign, R);
+  T Q[9];
+  CHOICE usual;
+  T sign = closed_factor(F, Q, &usual);
+  rotation_of_orthogonal(F, Q, sign, usual, R);
 }
 
 #endif

@@ -14,12 +14,22 @@
 
 #include "kernels/frames/inversion.h"
 
+/* What the cofactors C of F lose is seen in |F|^4 / |C|^2, from 3 to (s_1/s_2)^2: of
+ * needles, digits, in float up to the sign of det F. That of a flat element does not
+ * matter. Iterates of F grow eight-fold; their fourth powers are to be numbers. */
+INLINE CHOICE higham_usual(T square, T ratio) {
+  return within(square, BY_PRECISION(1e-16, 1e-150), BY_PRECISION(1e16, 1e150)) &
+         LESS(ratio * square, BY_PRECISION(1e4, 1e6));
+}
+
 /* Q := orthogonal polar factor of F, a reflection where det F < 0. Returns det Q,
  * +1 or -1.
- * in   F[9]  row-major, 1
- * fail       rank F < 2: NaN in that lane */
-INLINE T orthogonal_higham(const T *F, T *Q) {
+ * in   F[9]    row-major, 1
+ * out  *usual  where Q is that to rounding: F is no needle, and neither too small nor
+ *              too large for its fourth powers */
+INLINE T higham_factor(const T *F, T *Q, CHOICE *usual) {
   T C[9], sign = LIT(0), keep = LIT(0);
+  *usual = LESS(sign, LIT(1));
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   /* With g^2 = |Q^-1| / |Q| and Q^-T = C / det Q an iterate is a multiple of
    * Q / |Q| +- C / |C|: no division by the volume of a flat element. A rough g is
@@ -27,7 +37,8 @@ INLINE T orthogonal_higham(const T *F, T *Q) {
   for (int n = 0; n < HIGHAM_SCALED; n++) {
     cofactor3(Q, C);
     if (n == 0) sign = SELECT(dot3(Q, C) < LIT(0), LIT(-1), LIT(1));
-    T square = square9(Q), turn = sign * ROUGH_SQRT(square / square9(C));
+    T square = square9(Q), ratio = square / square9(C), turn = sign * ROUGH_SQRT(ratio);
+    if (n == 0) *usual = higham_usual(square, ratio);
     if (n == HIGHAM_SCALED - 1) keep = RSQRT(square);
     for (int i = 0; i < 9; i++) Q[i] = Q[i] + turn * C[i];
   }
@@ -43,16 +54,26 @@ INLINE T orthogonal_higham(const T *F, T *Q) {
   return sign;
 }
 
-/* Q := the same by at most `iterations` scaled ones, each of length sqrt(3), fewer if one
- * moves none of the lanes by more than tolerance: for measuring what an iteration is worth. */
-INLINE T orthogonal_higham_tuned(const T *F, size_t iterations, T tolerance, T *Q) {
+/* Q := orthogonal polar factor of F, a reflection where det F < 0. */
+INLINE void orthogonal_higham(const T *F, T *Q) {
+  CHOICE usual;
+  (void)higham_factor(F, Q, &usual);
+  repair(usual, F, true, Q);
+}
+
+/* Q := as higham_factor by at most `iterations` scaled ones, each of length sqrt(3), fewer
+ * if one moves none of the lanes by more than tolerance: for measuring what an iteration is
+ * worth. */
+INLINE T higham_factor_tuned(const T *F, size_t iterations, T tolerance, T *Q, CHOICE *usual) {
   T C[9], sign = LIT(0);
+  *usual = LESS(sign, LIT(1));
   for (int i = 0; i < 9; i++) Q[i] = F[i];
   for (size_t n = 0; n < iterations; n++) {
     T next[9], far = LIT(0);
     cofactor3(Q, C);
     if (n == 0) sign = SELECT(dot3(Q, C) < LIT(0), LIT(-1), LIT(1));
-    T turn = sign * SQRT(square9(Q) / square9(C));
+    T square = square9(Q), ratio = square / square9(C), turn = sign * SQRT(ratio);
+    if (n == 0) *usual = higham_usual(square, ratio);
     for (int i = 0; i < 9; i++) next[i] = Q[i] + turn * C[i];
     T scale = SQRT(LIT(3)) * RSQRT(square9(next));
     for (int i = 0; i < 9; i++) {
@@ -68,8 +89,10 @@ INLINE T orthogonal_higham_tuned(const T *F, size_t iterations, T tolerance, T *
 
 /* R := nearest rotation to F, an inversion moved to the smallest singular value. */
 INLINE void frame_polar_higham(const T *F, T *R) {
-  T Q[9], sign = orthogonal_higham(F, Q);
-  rotation_of_orthogonal(F, Q, sign, R);
+  T Q[9];
+  CHOICE usual;
+  T sign = higham_factor(F, Q, &usual);
+  rotation_of_orthogonal(F, Q, sign, usual, R);
 }
 
 #endif

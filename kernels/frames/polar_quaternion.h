@@ -10,7 +10,9 @@
 #ifndef CB_FRAME_POLAR_QUATERNION_H
 #define CB_FRAME_POLAR_QUATERNION_H
 
-#include "kernels/frames/polar_higham.h"
+#include <stddef.h>
+
+#include "kernels/frames/degenerate.h"
 
 /* R := matrix of the unit quaternion q = (w, x, y, z). */
 INLINE void quaternion_matrix(const T *q, T *R) {
@@ -53,7 +55,7 @@ INLINE void quaternion_turn(const T *K, T *q) {
   T p[4];
   for (int i = 0; i < 4; i++) p[i] = dot4(K + 4 * i, q);
   T trace = dot4(q, p), square = dot4(q, q);
-  T half = LIT(0.5) / (ABS(trace) + LIT(1e-9) * square);
+  T half = LIT(0.5) / (ABS(trace) + LIT(1e-30) * square);
   T keep = LIT(1) - half * trace, turn = half * square;
   for (int i = 0; i < 4; i++) q[i] = keep * q[i] + turn * p[i];
 }
@@ -68,20 +70,31 @@ INLINE void horn_matrix(const T *F, T *K) {
   for (int i = 0; i < 16; i++) K[i] = all[i];
 }
 
-/* Where q is all zero: the full decomposition (a cold guess can be far off after few
- * turns). */
-INLINE void quaternion_warm(const T *F, T *q, T *R) {
-  MASK cold = dot4(q, q) == LIT(0);
-  if (!ANY(cold)) return;
-  T start[4];
-  frame_polar_higham(F, R);
-  quaternion_from(R, start);
-  for (int i = 0; i < 4; i++) q[i] = SELECT(cold, start[i], q[i]);
+RARE void quaternion_of_any(const T *F, T *q) {
+  T R[9];
+  orthogonal_of_any(F, false, R);
+  quaternion_from(R, q);
 }
 
-INLINE void quaternion_end(T *q, T *R) {
-  T inverse = RSQRT(dot4(q, q));
+/* But where warm, q := by the full decomposition (a cold guess can be far off after few turns). */
+INLINE void quaternion_start(CHOICE warm, const T *F, T *q) {
+  if (ALL(warm)) return;
+  const T from[9] = {F[0], F[1], F[2], F[3], F[4], F[5], F[6], F[7], F[8]};
+  T start[4];
+  quaternion_of_any(from, start);
+  q[0] = CHOOSE(warm, q[0], start[0]);
+  choose3(warm, start + 1, q + 1);
+}
+
+/* ... where q is all zero. */
+INLINE void quaternion_warm(const T *F, T *q) { quaternion_start(LESS(LIT(0), dot4(q, q)), F, q); }
+
+/* Where tr F R^T = 0 a turn may have carried q beyond all numbers: by how much F has to
+ * be turned is not known from there. */
+INLINE void quaternion_end(const T *F, T *q, T *R) {
+  T square = dot4(q, q), inverse = RSQRT(square);
   for (int i = 0; i < 4; i++) q[i] = q[i] * inverse;
+  quaternion_start(within(square, LIT(1e-30), LIT(1e30)), F, q);
   quaternion_matrix(q, R);
 }
 
@@ -89,17 +102,17 @@ INLINE void quaternion_end(T *q, T *R) {
  * in/out  q[4]  last result, or all zero: a cold start */
 INLINE void frame_polar_quaternion(const T *F, T *q, T *R) {
   T K[16];
-  quaternion_warm(F, q, R);
+  quaternion_warm(F, q);
   horn_matrix(F, K);
   for (int n = 0; n < QUATERNION_TURNS; n++) quaternion_turn(K, q);
-  quaternion_end(q, R);
+  quaternion_end(F, q, R);
 }
 
 /* The same by at most so many turns, fewer if one moves none of the lanes' quaternions by
  * more than tolerance. */
 INLINE void frame_polar_quaternion_tuned(const T *F, size_t turns, T tolerance, T *q, T *R) {
   T K[16];
-  quaternion_warm(F, q, R);
+  quaternion_warm(F, q);
   horn_matrix(F, K);
   for (size_t n = 0; n < turns; n++) {
     T last[4], far = LIT(0);
@@ -113,7 +126,7 @@ INLINE void frame_polar_quaternion_tuned(const T *F, size_t turns, T tolerance, 
     }
     if (!ANY(far > tolerance)) break;
   }
-  quaternion_end(q, R);
+  quaternion_end(F, q, R);
 }
 
 #endif

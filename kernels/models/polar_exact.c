@@ -7,7 +7,8 @@
 #include "kernels/models/strain.h"
 
 /* P := P - [w]x, (tr(S) I - S) w = axial(P S - S P), S = R^T F: then R P is the
- * gradient of W(S): w stands for how R turns with F. */
+ * gradient of W(S): w stands for how R turns with F. Bounded where R may jump, the sum of
+ * two stretches being a thousandth or less: W jumps there too. */
 INLINE void polar_gradient(const T *S_, T *P) {
   T A[9], G[9], C[9], w[3];
   multiply3(P, S_, A);
@@ -15,9 +16,10 @@ INLINE void polar_gradient(const T *S_, T *P) {
   T trace = S_[0] + S_[4] + S_[8];
   for (int i = 0; i < 9; i++) G[i] = i % 4 == 0 ? trace - S_[i] : -S_[i];
   cofactor3(G, C);
-  T inverse = LIT(1) / dot3(G, C);
+  T det = dot3(G, C), least = LIT(1e-3) * (ABS(C[0]) + ABS(C[4]) + ABS(C[8])) + LIT(1e-30);
+  T inverse = LIT(1) / SELECT(det > least, det, least);
+  for (int i = 0; i < 3; i++) a[i] = inverse * a[i]; /* first: C a may be beyond float */
   apply3_transposed(C, a, w);
-  for (int i = 0; i < 3; i++) w[i] = inverse * w[i];
   P[1] = P[1] + w[2], P[3] = P[3] - w[2];
   P[6] = P[6] + w[1], P[2] = P[2] - w[1];
   P[5] = P[5] + w[0], P[7] = P[7] - w[0];

@@ -8,8 +8,9 @@ enum { HIGHAM_DEFAULT = 6 };
 
 INLINE void higham_tuned(size_t iterations, T tolerance, const T *F, T *R) {
   T Q[9], sign;
-  sign = orthogonal_higham_tuned(F, iterations ? iterations : HIGHAM_DEFAULT, tolerance, Q);
-  rotation_of_orthogonal(F, Q, sign, R);
+  CHOICE usual;
+  sign = higham_factor_tuned(F, iterations ? iterations : HIGHAM_DEFAULT, tolerance, Q, &usual);
+  rotation_of_orthogonal(F, Q, sign, usual, R);
 }
 
 #define SPARSE 0

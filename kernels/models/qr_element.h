@@ -61,9 +61,13 @@ INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
  * drops how Q turns with x, and with that the balance of torques.
  *   p32 = (S23 U33 - S33 U23) / U22
  *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
- *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11 */
+ *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11
+ * Where an edge or a face collapses W has no limit and its gradient no bound: divided by
+ * a hundredth at least. */
 INLINE void qr_gradient(const T *U, T *P) {
-  T first = LIT(1) / U[0], second = LIT(1) / U[2];
+  T least = LIT(1e-2);
+  T first = LIT(1) / SELECT(U[0] > least, U[0], least);
+  T second = LIT(1) / SELECT(U[2] > least, U[2], least);
   T s12 = P[1], s13 = P[2], s22 = P[4], s23 = P[5], s33 = P[8];
   P[7] = (s23 * U[5] - s33 * U[4]) * second;
   P[6] = (s13 * U[5] - s33 * U[3] - P[7] * U[1]) * first;

@@ -2,11 +2,13 @@
  * a fixed number of iterations, new velocities and positions.
  * Source: Baraff & Witkin 1998, section 5 (filtering: a fixed node's residual
  *         and search direction are zero, so it never moves); no preconditioner,
- *         as in the paper.
+ *         as in the paper. Nocedal & Wright 2006, section 7.1 (negative curvature).
  * Trade:  stopped early, a free body with unequal masses drifts: the residual
  *         that is left has a sum. Masses as preconditioner would prevent it.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -159,25 +161,87 @@ static void turn(const struct cb_stepper *s, struct share own, T beta) {
   }
 }
 
-/* Once the residual is gone to rounding, or p . A p underflows (float), the work
- * goes on with zero steps: every iteration costs the same, and no 0/0 arises. */
-static void solve(struct cb_stepper *s, size_t thread) {
+/* p . M p, where M is all that is left of the operator. */
+static ACC inertia(const struct cb_stepper *s, size_t thread, struct share own) {
+  const T *restrict p = s->vector[STEPPER_P], *restrict m = s->vector[STEPPER_MASS];
+  struct sum sum = {0};
+  for (size_t i = own.first; i < own.last; i += BLOCK_TS)
+    for (size_t n = 0; n < BLOCK_TS; n++) sum_product(&sum, n, p[i + n], m[i + n] * p[i + n]);
+  return reduce(s, thread, 1, &sum);
+}
+
+/* Bounds of |p| and |dv| by the triangle inequality, kept beside the vectors: what would
+ * overflow is known before it is written. In double, which `counted` does not count. */
+struct bounds {
+  double p, dv;
+  double steepest; /* the largest p . A p / |p|^2 met */
+};
+
+/* Lost in rounding beside the steepest direction, twice over: on a positive definite A whose
+ * condition is anything like what the arithmetic can solve this is never so. */
+static bool lacks_curvature(struct bounds *b, double roundoff, double py) {
+  const double slope = py / b->p / b->p;
+  b->steepest = fmax(b->steepest, slope);
+  return py <= 0 || slope <= 256 * roundoff * roundoff * b->steepest;
+}
+
+static bool within(const struct bounds *b, double step) {
+  const double most = (sizeof(S) == sizeof(float) ? FLT_MAX : DBL_MAX) / 2;
+  return b->p <= most && fabs(step) <= most && b->dv + fabs(step) * b->p <= most; /* NaN: no */
+}
+
+/* A step from dv = 0 where b . A b <= 0: downhill, and no farther than the size of the
+ * curvature or the mass alone would allow. */
+static bool descend_without_curvature(const struct cb_stepper *s, size_t thread, struct share own,
+                                      const struct bounds *b, ACC rr, ACC py) {
+  const double mass = (double)inertia(s, thread, own), step = (double)rr / fmax(mass, -(double)py);
+  if (!within(b, step)) return false;
+  cb_team_barrier(cb_operator_team(s->op)); /* two sums in the same place */
+  descend(s, thread, own, splat((S)step));
+  return true;
+}
+
+/* All threads decide alike: by sums that are the same on each. What ends the work is
+ * looked at before dv is touched, so that dv is finite whatever comes. Once the residual
+ * is gone to rounding the work goes on with zero steps: every iteration costs the same,
+ * and no 0/0 arises. */
+static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct share own) {
   struct cb_team *team = cb_operator_team(s->op);
-  const struct share own = share_of(s->nodes, s->threads, thread);
   const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
   ACC rr = start(s, thread, own), enough = rr * (ACC)(roundoff * roundoff);
+  struct bounds bound = {sqrt((double)rr), 0, 0};
+  struct cb_ended ended = {CB_ENDED_ITERATIONS, 0};
   for (size_t k = 0; k < s->parameters.iterations; k++) {
+    if (!isfinite((double)rr)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
     cb_operator_product_part(s->op, thread, s->vector[STEPPER_P], s->vector[STEPPER_Y]);
     cb_team_barrier(team);
     filter(s, scalars_of(s->nodes, own), s->vector[STEPPER_Y]);
     const ACC py = curvature(s, thread, own);
-    const int finished = !(rr > enough) || py == 0;
-    const ACC next = descend(s, thread, own, splat(finished ? (S)0 : (S)(rr / py)));
+    if (!(rr > enough)) ended.why = CB_ENDED_SOLVED;
+    const bool solved = ended.why == CB_ENDED_SOLVED;
+    if (!isfinite((double)py)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
+    if (!solved && lacks_curvature(&bound, roundoff, (double)py)) {
+      const bool first = k == 0 && descend_without_curvature(s, thread, own, &bound, rr, py);
+      return (struct cb_ended){CB_ENDED_INDEFINITE, first ? 1 : k};
+    }
+    const ACC alpha = solved ? 0 : rr / py;
+    if (!within(&bound, (double)alpha)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
+    bound.dv += (double)alpha * bound.p;
+    const ACC next = descend(s, thread, own, splat((S)alpha));
+    ended.iterations += !solved;
     if (k + 1 == s->parameters.iterations) break;
-    turn(s, own, splat(finished ? (S)0 : (S)(next / rr)));
+    const ACC beta = solved ? 0 : next / rr;
+    turn(s, own, splat((S)beta));
+    bound.p = sqrt((double)next) + (double)beta * bound.p;
     rr = next;
     cb_team_barrier(team);
   }
+  return ended;
+}
+
+static void solve(struct cb_stepper *s, size_t thread) {
+  const struct cb_ended ended = iterate(s, thread, share_of(s->nodes, s->threads, thread));
+  if (thread == 0) s->ended = ended;
 }
 
 static void advance(struct cb_stepper *s, size_t thread, void *positions, void *velocities) {

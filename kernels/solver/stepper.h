@@ -30,6 +30,7 @@ struct cb_stepper {
   uint32_t *fixed; /* [fixed_count] node numbers, ascending */
   size_t fixed_count;
   struct cb_partial *partial; /* [threads] */
+  struct cb_ended ended;      /* thread 0 writes it */
 };
 
 #endif

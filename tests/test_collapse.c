@@ -1,0 +1,182 @@
+/* test_collapse.c - forces of elements that have collapsed to a plane, a line or a point,
+ * are far too large, too small or too far away: finite, bounded, and continuous where
+ * the energy is.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tests/element.h"
+
+enum { SHAPES = 20 };
+
+/* Divides by the current volume, which the paper drops for that. */
+static bool blows_up(const char *name) { return strstr(name, "-updated-volume") != NULL; }
+
+typedef void shape_fn(gsl_rng *rng, const double *X, double size, double *x);
+
+static void point(gsl_rng *rng, const double *X, double size, double *x) {
+  (void)rng, (void)X;
+  for (int i = 0; i < 12; i++) x[i] = size;
+}
+
+static void line(gsl_rng *rng, const double *X, double size, double *x) {
+  double along[3], axis[3];
+  random_vector(rng, 3, along);
+  random_vector(rng, 3, axis);
+  for (int i = 0; i < 12; i++) {
+    const double *p = X + i / 3 * 3;
+    x[i] = size * (along[0] * p[0] + along[1] * p[1] + along[2] * p[2]) * axis[i % 3];
+  }
+}
+
+static void axis_line(gsl_rng *rng, const double *X, double size, double *x) {
+  (void)rng;
+  for (int i = 0; i < 12; i++) x[i] = i % 3 == 1 ? size * X[i] : 0;
+}
+
+static void plane(gsl_rng *rng, const double *X, double size, double *x) {
+  int flat = (int)gsl_rng_uniform_int(rng, 3);
+  for (int i = 0; i < 12; i++) x[i] = i % 3 == flat ? 0 : size * X[i];
+}
+
+/* Two vertices in one place, or three. */
+static void merged(gsl_rng *rng, const double *X, double size, double *x) {
+  int count = 1 + (int)gsl_rng_uniform_int(rng, 2), first = (int)gsl_rng_uniform_int(rng, 4);
+  for (int i = 0; i < 12; i++) x[i] = size * X[i];
+  for (int n = 1; n <= count; n++)
+    for (int i = 0; i < 3; i++) x[(first + n) % 4 * 3 + i] = x[first * 3 + i];
+}
+
+static void mirrored(gsl_rng *rng, const double *X, double size, double *x) {
+  (void)rng;
+  for (int i = 0; i < 12; i++) x[i] = -size * X[i];
+}
+
+static void offset(gsl_rng *rng, const double *X, double size, double *x) {
+  double far = pow(10, 3 + (double)gsl_rng_uniform_int(rng, 7));
+  for (int i = 0; i < 12; i++) x[i] = size * X[i] + far;
+}
+
+static shape_fn *const shapes[] = {point, line, axis_line, plane, merged, mirrored, offset};
+
+/* Largest of the force and the product there; not finite: infinite. */
+static double most_at(const struct cb_variant *v, const struct scene *s,
+                      const struct cb_material *m) {
+  struct run r;
+  quad q[12];
+  double most = 0;
+  run_open(&r, s, v, m, 1);
+  run_update(&r, r.v, 1, q);
+  most = quad_norm(12, q);
+  run_product(&r, r.u, q);
+  if (!(quad_norm(12, q) < most)) most = quad_norm(12, q);
+  run_close(&r);
+  return isfinite(most) ? most : INFINITY;
+}
+
+static bool is_tested(const struct cb_variant *v, bool ortho) {
+  return cb_arithmetic_runs(v->arithmetic) && !blows_up(v->model->name) &&
+         v->arithmetic->scalar_bytes != sizeof(quad) && v->storage != CB_CSR &&
+         v->storage != CB_BCSR_SYMMETRIC && v->model->form[v->storage][ortho].update;
+}
+
+/* What the derivative of a force that is bounded by a hundredth may have: turning, over
+ * stretches of a thousandth at least. */
+static bool is_derivative(const char *name) { return strncmp(name, "polar-tangent", 13) == 0; }
+
+/* Worst over the shapes of a size, of every variant; limit of a derivative 100 times. */
+static void of_size(double size, double most_allowed) {
+  double worst[2] = {0};
+  for (int ortho = 0; ortho < 2; ortho++)
+    for (const struct cb_variant *v = cb_variants(NULL); v->model; v++) {
+      if (!is_tested(v, ortho)) continue;
+      gsl_rng *rng = scene_rng();
+      struct scene s = scene_new(rng, SCENE_ONE);
+      struct cb_material m = scene_material(ortho);
+      char name[96];
+      cb_variant_name(v, name);
+      for (size_t n = 0; n < SHAPES * sizeof shapes / sizeof *shapes; n++) {
+        shapes[n / SHAPES](rng, s.mesh.X, size, s.x);
+        double most = most_at(v, &s, &m);
+        const bool derivative = is_derivative(v->model->name);
+        const double limit = derivative ? 100 * most_allowed : most_allowed;
+        worst[derivative] = fmax(worst[derivative], most);
+        if (!(most <= limit))
+          fail_msg("%s, shape %zu, size %g: %.3g, limit %.3g", name, n / SHAPES, size, most, limit);
+      }
+      scene_free(&s);
+      gsl_rng_free(rng);
+    }
+  print_message("# size %g: at most %.2g, derivatives %.2g\n", size, worst[0], worst[1]);
+}
+
+/* Unit size, moduli up to 2600 Pa. */
+static void collapsed_elements_push_within_bounds(void **state) {
+  (void)state;
+  of_size(1, 1e6);
+}
+
+/* Green's force is a cube: beyond float from 1e12 on. */
+static void sizes_are_finite(void **state) {
+  (void)state;
+  of_size(1e-12, 1e6);
+  of_size(1e-6, 1e6);
+  of_size(1e6, 1e30);
+}
+
+/* ---- continuity ------------------------------------------------------------------- */
+
+static void force_at(const struct cb_variant *v, const struct scene *s, const struct cb_material *m,
+                     quad *f) {
+  struct run r;
+  run_open(&r, s, v, m, 1);
+  run_update(&r, NULL, 1, f);
+  run_close(&r);
+}
+
+/* Vertex j goes through the plane of the others: what the force does between just
+ * before and just after is in proportion to the way between. */
+static void through_the_plane(const struct cb_variant *v, struct scene *s,
+                              const struct cb_material *m, int j) {
+  const double *p = s->x + (j + 1) % 4 * 3, *q = s->x + (j + 2) % 4 * 3,
+               *r = s->x + (j + 3) % 4 * 3;
+  double a[3], b[3], normal[3], middle[3], way = 1e-2, worst = 0;
+  for (int i = 0; i < 3; i++) {
+    a[i] = q[i] - p[i], b[i] = r[i] - p[i];
+    middle[i] = (p[i] + q[i] + r[i]) / 3;
+  }
+  for (int i = 0; i < 3; i++)
+    normal[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (; way > 1e-9; way /= 10) {
+    quad f[24];
+    for (int side = 0; side < 2; side++) {
+      for (int i = 0; i < 3; i++) s->x[3 * j + i] = middle[i] + (side ? way : -way) * normal[i];
+      force_at(v, s, m, f + 12 * side);
+    }
+    worst = fmax(worst, quad_distance(12, f, f + 12) / (way * 2600));
+  }
+  /* A stiffness of moduli up to 2600 Pa; measured at most 8. */
+  assert_within(v->model->name, worst, 40);
+}
+
+static void exact_forces_are_continuous_when_flat(void **state) {
+  static const char *const names[] = {"qr-exact", "polar-exact"};
+  (void)state;
+  gsl_rng *rng = scene_rng();
+  for (int trial = 0; trial < SHAPES; trial++)
+    for (int n = 0; n < 4; n++) {
+      struct scene s = scene_new(rng, trial % 2 ? SCENE_ONE : SCENE_MIRRORED);
+      struct cb_material m = scene_material(n % 2);
+      const struct cb_variant v = {scene_model(scene_f64(), names[n / 2]), CB_EBE, scene_f64()};
+      through_the_plane(&v, &s, &m, trial % 4);
+      scene_free(&s);
+    }
+  gsl_rng_free(rng);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(collapsed_elements_push_within_bounds),
+      cmocka_unit_test(sizes_are_finite),
+      cmocka_unit_test(exact_forces_are_continuous_when_flat),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
