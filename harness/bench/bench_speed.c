@@ -90,7 +90,7 @@ static double error_of(size_t n, const double *found, const double *exact, const
   double error = 0, scale = 0;
   for (size_t i = 0; i < n; i++) {
     const double difference = fabs(found[i] - exact[i]);
-    if (!(difference <= error)) error = difference; /* a NaN stays */
+    if (!isnan(error) && !(difference <= error)) error = difference; /* a NaN stays */
     scale = fmax(scale, fabs(exact[i] - (start ? start[i] : 0)));
   }
   return error / scale;
