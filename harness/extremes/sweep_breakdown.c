@@ -69,6 +69,10 @@ static const struct system systems[] = {{"squeezed to 0.3", squeezed, true, true
                                         {"a position infinite", infinite, false, false}};
 enum { SYSTEMS = sizeof systems / sizeof *systems };
 
+static bool is_flat(const struct system *s) {
+  return s->make == plane || s->make == line || s->make == point;
+}
+
 /* ---- one step --------------------------------------------------------------------------- */
 
 static const char *const ending[] = {[CB_ENDED_ITERATIONS] = "all iterations",
@@ -104,6 +108,10 @@ static enum cb_status step(const struct system *system, const struct cb_bench_sc
                 !(system->sound && ended.why == CB_ENDED_OVERFLOW);
   snprintf(row->note, sizeof row->note, "%s after %zu of %d, dv up to %.2g m/s", ending[ended.why],
            ended.iterations, ITERATIONS, largest(3 * nodes, work));
+  const char *tail = strrchr(row->variant->model->name, '-');
+  if (!row->finite && is_flat(system) && tail && strcmp(tail, "-volume") == 0)
+    snprintf(row->note, sizeof row->note, "by method: B is divided by a volume of 0; solver: %s",
+             ending[ended.why]);
   if (system->make == held && largest(3 * nodes, work) != 0) row->law = "fixed nodes stay";
   if (system->definite && ended.why == CB_ENDED_INDEFINITE &&
       row->variant->model->laws[0] & CB_KEEPS(CB_LAW_SEMIDEFINITE))
