@@ -1,5 +1,5 @@
-/* exact.h - what a frame is by its definition, in quad precision and iterated until
- * nothing moves: shares no line with kernels/.
+/* exact.h - what a model's frame is by its definition, in quad precision
+ * (reference/exact_frames.h): shares no line with kernels/.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_EXACT_H

@@ -60,6 +60,9 @@ struct cb_frame_result {
 };
 enum { CB_FRAME_LIMIT = 1000 }; /* of each, roundoffs */
 
+/* All NaN but for the number of inputs. */
+struct cb_frame_result cb_frame_unmeasured(const struct cb_frame_group *group);
+
 /* *at (may be NULL) := number of the input that is worked on, counted within the group; behind
  * the last while the routine is timed. CB_MEMORY, CB_INTERRUPTED. */
 enum cb_status cb_frame_measure(const struct cb_frame_routine *routine,

@@ -123,16 +123,20 @@ static void put(const struct cb_frame_set *set, void *to, size_t i, double value
     ((double *)to)[i] = value;
 }
 
+struct cb_frame_result cb_frame_unmeasured(const struct cb_frame_group *group) {
+  return (struct cb_frame_result){.inputs = group->count,
+                                  .error = NAN,
+                                  .degrees = NAN,
+                                  .orthogonality = NAN,
+                                  .determinant = NAN,
+                                  .excess = NAN,
+                                  .ns = NAN};
+}
+
 enum cb_status cb_frame_measure(const struct cb_frame_routine *routine,
                                 const struct cb_frame_set *set, const struct cb_frame_group *group,
                                 volatile size_t *at, struct cb_frame_result *result) {
-  struct cb_frame_result r = {.inputs = group->count,
-                              .error = NAN,
-                              .degrees = NAN,
-                              .orthogonality = NAN,
-                              .determinant = NAN,
-                              .excess = NAN,
-                              .ns = NAN};
+  struct cb_frame_result r = cb_frame_unmeasured(group);
   const struct cb_frame_input *input = set->input + group->first;
   const size_t bytes = 9 * set->scalar_bytes;
   char *F = malloc(group->count * bytes), *R = malloc(group->count * bytes);

@@ -201,14 +201,7 @@ enum cb_status cb_outside_measure(const struct cb_outside *library, const struct
   enum cb_status status = in_child(measure_inside, &call, &left, end);
   if (status) return status;
   *result = left->result;
-  if (end->how != CB_OUTSIDE_DONE)
-    *result = (struct cb_frame_result){.inputs = group->count,
-                                       .error = NAN,
-                                       .degrees = NAN,
-                                       .orthogonality = NAN,
-                                       .determinant = NAN,
-                                       .excess = NAN,
-                                       .ns = NAN};
+  if (end->how != CB_OUTSIDE_DONE) *result = cb_frame_unmeasured(group);
   munmap(left, sizeof *left);
   return CB_OK;
 }
