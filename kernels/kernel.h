@@ -118,7 +118,8 @@ struct cb_form {
 
 /* R[9*count] := frames of the deformation gradients F[9*count], row-major, both of the
  * arithmetic's scalar: those of elements that at rest have the unit vectors as edges.
- * Warm-started frames start cold for each. R must not overlap F. */
+ * Warm-started frames start cold for each. For every finite F they are finite rotations, or
+ * reflections where the model says so. R must not overlap F. */
 typedef void cb_frame_fn(size_t count, const void *F, void *R);
 
 /* One model in one arithmetic. `laws[0]` isotropic, `laws[1]` orthotropic:
