@@ -86,7 +86,7 @@ FUZZING   = --no-print-directory BUILD=build-fuzz OPT=-O1 CC=clang OPENMP= \
               SANFLAGS='-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all'
 
 sanitize: | $(FIRST) ## the same tests under the address and undefined behaviour sanitizers
-	@$(MAKE) $(SANITIZED) test
+	@TEST_SECONDS=1200 $(MAKE) $(SANITIZED) test
 
 RACERS = build-races/tests/test_threads build-races/tests/test_machine
 # Races are looked for where threads share most: the slow sanitizer gets no more.
@@ -167,7 +167,8 @@ $(DATED): private CPPFLAGS += -DCB_COMMIT='"$(COMMIT)"'
 define arithmetic_rule
 $(BUILD)/$(1)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $$(@D)
-	$$(CC) $$(CPPFLAGS) $$(CFLAGS) $$(ARITH_$(1)) -MMD -MP -c -o $$@ $$<
+	@echo 'CC   $$< for $(1)'
+	@$$(CC) $$(CPPFLAGS) $$(CFLAGS) $$(ARITH_$(1)) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach a,$(ARITHMETICS),$(eval $(call arithmetic_rule,$(a))))
 

@@ -32,10 +32,10 @@ OUTLINE void frame_called(const struct cb_elements *E, const T *e, const T *F, T
  * out     R[9]  frame
  *         F[9]  such that F R^T - I, made symmetric, is the corotated strain in world
  *               axes; not read for a precomputed B
- *         L[3]  exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
- *               a symmetric one */
+ *         L[12] exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
+ *               a symmetric one; then, where this returns true, any stress besides */
 #define FRAME_WORLD frame_world
-INLINE void frame_world(const struct cb_elements *E, int policy, int exact, int ortho,
+INLINE bool frame_world(const struct cb_elements *E, int policy, int exact, int ortho,
                         const T *rest, const T *e, const T *own, T *memory, T *R, T *F, T *L) {
   (void)E, (void)exact, (void)own, (void)memory, (void)L;
   deformation_gradient(policy, rest, e, F);
@@ -44,6 +44,7 @@ INLINE void frame_world(const struct cb_elements *E, int policy, int exact, int 
   else
     FRAME_ROTATION(own, F, memory, R);
   STAGE(STAGE_FORCE);
+  return false;
 }
 #endif
 
@@ -59,7 +60,7 @@ static void frames(size_t count, const void *F, void *R) {
   T rest[REST_ORTHOTROPIC] = {0};
   rest[REST_G] = rest[REST_G + 4] = rest[REST_G + 8] = rest[REST_EDGE] = LIT(1);
   for (size_t n = 0; n < count; n += LANES) {
-    T e[9], memory[FRAME_MEMORY] = {0}, Q[9], G[9], L[3];
+    T e[9], memory[FRAME_MEMORY] = {0}, Q[9], G[9], L[12];
     const size_t live = count - n < LANES ? count - n : LANES;
     for (size_t l = 0; l < LANES; l++)
       for (size_t i = 0; i < 9; i++)
@@ -194,14 +195,23 @@ INLINE void add_lower(const T *R, T scale, const T *L, T *M) {
   }
 }
 
-/* f := h f - c K v, where the stress is a function of F R^T, and of L. */
+/* M += scale R P R^T */
+INLINE void add_stress(const T *R, T scale, const T *P, T *M) {
+  T RP[9], world[9];
+  multiply3(R, P, RP);
+  multiply3_nt(RP, R, world);
+  for (int i = 0; i < 9; i++) M[i] = M[i] + scale * world[i];
+}
+
+/* f := h f - c K v, where the stress is a function of F R^T, and of L; all of it? */
 INLINE void world_forces(const struct cb_elements *E, int policy, int exact, int ortho,
-                         const T *rest, const T *R, const T *F, const T *L, T h, const T *e,
-                         const T *w, const T *ev, T *f) {
+                         const T *rest, const T *R, const T *F, const T *L, bool all, T h,
+                         const T *e, const T *w, const T *ev, T *f) {
   T Z[9], M[9], scale = -(h * rest[REST_FORCE]);
   world_strain(policy, rest, R, F, scale, e, ev, w, Z);
   stress(ortho, E->k, rest + REST_D, Z, M);
   if (exact) add_lower(R, scale, L, M);
+  if (__builtin_expect(all, 0)) add_stress(R, scale, L + 3, M);
   forces3(M, w, f);
 }
 
@@ -221,8 +231,8 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
                            const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
                            T *R, T *w, T *f) {
   if (NO_FRAME || !ortho) {
-    T F[9], L[3];
-    FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
+    T F[9], L[12];
+    const bool all = FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
     STAGE(STAGE_B);
 #ifdef LAZY
     lazy_gradients(E, rest, e, R, F, memory, w);
@@ -230,7 +240,7 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
     world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
 #endif
     STAGE(STAGE_FORCE);
-    world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
+    world_forces(E, policy, exact, ortho, rest, R, F, L, all, h, e, w, ev, f);
     return;
   }
   T P[9], y[6], q[9], p[9];

@@ -25,39 +25,48 @@
 
 /* tr(V) I - V has the sums of two stretches as eigenvalues, none negative. Where one
  * is below this (a much inverted element, whose frame may jump; or a collapsed one)
- * the turning is bounded: the sum, or their product, is taken to be larger. */
+ * the turning is bounded: the sum is taken to be as large. */
 #define LEAST_TURN LIT(1e-3)
 
 static const uint8_t voigt_row[6] = {0, 1, 2, 0, 1, 2}, voigt_column[6] = {0, 1, 2, 1, 2, 0};
 
-/* C (Voigt order) of V, symmetric. */
+/* C (Voigt order) of V, symmetric, from its eigenvectors. Clamped: eigenvalues below zero
+ * made zero: as the form of sym(Z) is never negative, and apart from that of a, this is the
+ * nearest semi-definite dP(dF). */
+INLINE void turning_by_axes(bool clamped, T k, const T *V, T *C) {
+  T trace = V[0] + V[4] + V[8], factor = LIT(2) - k * (trace - LIT(3)), A[9], lambda[3];
+  jacobi_eigen(V, A, lambda);
+  for (int i = 0; i < 3; i++) {
+    T sum = trace - lambda[i]; /* of the two other stretches */
+    lambda[i] = LIT(1) - factor / SELECT(sum > LEAST_TURN, sum, LEAST_TURN);
+    if (clamped) lambda[i] = SELECT(lambda[i] < LIT(0), LIT(0), lambda[i]);
+  }
+  for (int n = 0; n < 6; n++) {
+    const T *p = A + 3 * voigt_row[n], *q = A + 3 * voigt_column[n];
+    C[n] = lambda[0] * (p[0] * q[0]) + lambda[1] * (p[1] * q[1]) + lambda[2] * (p[2] * q[2]);
+  }
+}
+
+/* The same where a sum may be below the least, or two, which cofactors do not tell. */
+RARE void turning_of_any(T k, const T *V, T *C) { turning_by_axes(false, k, V, C); }
+
 INLINE void turning(T k, const T *V, T *C) {
   T trace = V[0] + V[4] + V[8], A[9], cofactor[9];
   for (int i = 0; i < 9; i++) A[i] = i % 4 == 0 ? trace - V[i] : -V[i];
   cofactor3(A, cofactor);
   T det = dot3(A, cofactor);
   T least = LEAST_TURN * (ABS(cofactor[0]) + ABS(cofactor[4]) + ABS(cofactor[8])) + LIT(1e-30);
-  T scale = (LIT(2) - k * (trace - LIT(3))) / SELECT(det > least, det, least);
+  CHOICE usual = LESS(least, det);
+  T scale = (LIT(2) - k * (trace - LIT(3))) / CHOOSE(usual, det, LIT(1));
   for (int n = 0; n < 6; n++) {
     C[n] = -(scale * cofactor[3 * voigt_row[n] + voigt_column[n]]);
     if (n < 3) C[n] = LIT(1) + C[n];
   }
-}
-
-/* The same, with eigenvalues below zero made zero: as the form of sym(Z) is never
- * negative, and apart from that of a, this is the nearest semi-definite dP(dF). */
-INLINE void turning_clamped(T k, const T *V, T *C) {
-  T trace = V[0] + V[4] + V[8], factor = LIT(2) - k * (trace - LIT(3)), A[9], lambda[3];
-  jacobi_eigen(V, A, lambda);
-  for (int i = 0; i < 3; i++) {
-    T sum = trace - lambda[i]; /* of the two other stretches */
-    lambda[i] = LIT(1) - factor / SELECT(sum > LEAST_TURN, sum, LEAST_TURN);
-    lambda[i] = SELECT(lambda[i] < LIT(0), LIT(0), lambda[i]);
-  }
-  for (int n = 0; n < 6; n++) {
-    const T *p = A + 3 * voigt_row[n], *q = A + 3 * voigt_column[n];
-    C[n] = lambda[0] * (p[0] * q[0]) + lambda[1] * (p[1] * q[1]) + lambda[2] * (p[2] * q[2]);
-  }
+  if (__builtin_expect(ALL(usual), 1)) return;
+  const T from[9] = {V[0], V[1], V[2], V[3], V[4], V[5], V[6], V[7], V[8]};
+  T bounded[6];
+  turning_of_any(k, from, bounded);
+  for (int n = 0; n < 6; n++) C[n] = CHOOSE(usual, bounded[n], C[n]);
 }
 
 /* M := [k tr(Z) I + Z + Z^T] + [C a]x. */
@@ -84,7 +93,7 @@ INLINE void tangent_ebe(const struct cb_elements *E, bool clamped, const T *rest
     for (int j = 0; j < i; j++)
       V[3 * i + j] = V[3 * j + i] = LIT(0.5) * (V[3 * i + j] + V[3 * j + i]);
   if (clamped)
-    turning_clamped(E->k, V, C);
+    turning_by_axes(true, E->k, V, C);
   else
     turning(E->k, V, C);
   STAGE(STAGE_FORCE);

@@ -9,6 +9,9 @@
 #include "kernels/frames/qr.h"
 #include "kernels/models/strain.h"
 
+/* What qr-exact divides by, at least. */
+#define LEAST_EDGE LIT(1e-3)
+
 /* F[9] := F Q0. Rest shapes are kept in their own edge frame Q0: rest gradients are
  * triangular where the vertices have their own order, b: xyz, c: 0yz, d: 00z. */
 INLINE void qr_gradient_of_edges(const struct cb_elements *E, int policy, const T *rest, const T *e,
@@ -63,15 +66,54 @@ INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
  *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
  *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11
  * Where an edge or a face collapses W has no limit and its gradient no bound: divided by
- * a thousandth at least, which below that leaves a ghost torque. */
-INLINE void qr_gradient(const T *U, T *P) {
-  T least = LIT(1e-3);
+ * LEAST_EDGE at least, which leaves a ghost torque. Returns whether any lane is so. */
+INLINE bool qr_gradient(const T *U, T *P) {
+  const T least = LEAST_EDGE;
   T first = LIT(1) / SELECT(U[0] > least, U[0], least);
   T second = LIT(1) / SELECT(U[2] > least, U[2], least);
   T s12 = P[1], s13 = P[2], s22 = P[4], s23 = P[5], s33 = P[8];
   P[7] = (s23 * U[5] - s33 * U[4]) * second;
   P[6] = (s13 * U[5] - s33 * U[3] - P[7] * U[1]) * first;
   P[3] = (s12 * U[2] + s13 * U[4] - s22 * U[1] - s23 * U[3]) * first;
+  return !ALL(LESS(least, U[0]) & LESS(least, U[2]));
+}
+
+/* D[9]: the least with which P + D makes no torque, (P + D) U^T symmetric: D = [w]x U with
+ * (tr(U U^T) I - U U^T) w = axial(U P^T - P U^T). Along a line that is as good as singular:
+ * a few roundings more on the diagonal keep w bounded. */
+RARE void balance_of_any(const T *stretch, const T *P, T *D) {
+  T U[6], A[9], C[9], G[9], inner[9], sum[9];
+  for (int i = 0; i < 6; i++) U[i] = stretch[i];
+  scale_to_one(6, U);
+  const T rows[9] = {U[0], U[1], U[3], LIT(0), U[2], U[4], LIT(0), LIT(0), U[5]};
+  multiply3_nt(rows, rows, C);
+  const T more = (C[0] + C[4] + C[8]) * BY_PRECISION(0x1p-20, 0x1p-49);
+  for (int i = 0; i < 9; i++) G[i] = -C[i], sum[i] = P[i];
+  G[0] = C[4] + C[8] + more, G[4] = C[0] + C[8] + more, G[8] = C[0] + C[4] + more;
+  cofactor3(G, inner);
+  const T det = dot3(G, inner), inverse = SELECT(det > LIT(0), LIT(1) / det, LIT(0));
+  for (int n = 0; n < 2; n++) { /* again with what rounding and `more` have left */
+    T w[3];
+    multiply3_nt(sum, rows, A);
+    const T a[3] = {A[5] - A[7], A[6] - A[2], A[1] - A[3]};
+    for (int i = 0; i < 3; i++) w[i] = inverse * dot3(inner + 3 * i, a);
+    for (int j = 0; j < 3; j++) {
+      const T column[3] = {rows[j], rows[3 + j], rows[6 + j]};
+      T turned[3];
+      cross3(w, column, turned);
+      for (int i = 0; i < 3; i++) sum[3 * i + j] = sum[3 * i + j] + turned[i];
+    }
+  }
+  for (int i = 0; i < 9; i++) D[i] = sum[i] - P[i];
+}
+
+/* The same; U, P and D need not be in memory for it. */
+INLINE void qr_balance(const T *U, const T *P, T *D) {
+  const T stretch[6] = {U[0], U[1], U[2], U[3], U[4], U[5]};
+  const T stress_[9] = {P[0], P[1], P[2], P[3], P[4], P[5], P[6], P[7], P[8]};
+  T more[9];
+  balance_of_any(stretch, stress_, more);
+  for (int i = 0; i < 9; i++) D[i] = more[i];
 }
 
 INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
@@ -82,22 +124,30 @@ INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int orth
   STAGE(STAGE_FORCE);
   qr_stretch(E, policy, rest, e, R, y, U);
   qr_stress(E->k, ortho, rest, U, P);
-  if (exact) qr_gradient(U, P);
+  if (!exact || !qr_gradient(U, P)) return;
+  T D[9];
+  qr_balance(U, P, D);
+  for (int i = 0; i < 9; i++) P[i] = P[i] + D[i];
 }
 
-INLINE void qr_world(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
+INLINE bool qr_world(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
                      const T *e, const T *own, T *memory, T *R, T *F, T *L) {
-  T y[6];
+  T y[6], U[6], P[9];
   (void)memory;
   if (!exact) {
     frame_qr_axes(own, R, y);
     STAGE(STAGE_FORCE);
     if (policy != POLICY_PRECOMPUTED) qr_gradient_of_edges(E, policy, rest, e, F);
-    return;
+    return false;
   }
-  T P[9];
-  qr_pack(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
+  frame_qr(own, R, y);
+  STAGE(STAGE_FORCE);
+  qr_stretch(E, policy, rest, e, R, y, U);
+  qr_stress(E->k, ortho, rest, U, P);
+  const bool bounded = qr_gradient(U, P);
   L[0] = P[3] - P[1], L[1] = P[6] - P[2], L[2] = P[7] - P[5];
+  if (bounded) qr_balance(U, P, L + 3);
+  return bounded;
 }
 
 #endif

@@ -174,8 +174,29 @@ static ACC inertia(const struct cb_stepper *s, size_t thread, struct share own) 
  * overflow is known before it is written. In double, which `counted` does not count. */
 struct bounds {
   double p, dv;
+  double scale;    /* of the system that is solved; dv is in its units */
   double steepest; /* the largest p . A p / |p|^2 met */
 };
+
+/* A power of two that takes a right-hand side of that size to about 1 where A p or the
+ * squares might be beyond the arithmetic or denormal otherwise; 1 nearly always. */
+static double scale_of(double size) {
+  const double large = sizeof(S) == sizeof(float) ? 0x1p40 : 0x1p300;
+  const bool usual = !(size > large) && !(size < 1 / large);
+  return usual || size == 0 || !isfinite(size) ? 1 : exp2(-ilogb(size));
+}
+
+/* r, p := scale b, y := M p */
+static void begin_scaled(const struct cb_stepper *s, struct share own, double scale) {
+  const S *restrict b = s->vector[STEPPER_B], *restrict m = s->vector[STEPPER_MASS];
+  S *restrict r = s->vector[STEPPER_R], *restrict p = s->vector[STEPPER_P];
+  S *restrict y = s->vector[STEPPER_Y];
+  const struct share scalars = scalars_of(s->nodes, own);
+  for (size_t i = scalars.first; i < scalars.last; i++) {
+    r[i] = p[i] = (S)(scale * b[i]);
+    y[i] = m[i] * p[i];
+  }
+}
 
 /* Lost in rounding beside the steepest direction, twice over: on a positive definite A whose
  * condition is anything like what the arithmetic can solve this is never so. */
@@ -187,7 +208,8 @@ static bool lacks_curvature(struct bounds *b, double roundoff, double py) {
 
 static bool within(const struct bounds *b, double step) {
   const double most = (sizeof(S) == sizeof(float) ? FLT_MAX : DBL_MAX) / 2;
-  return b->p <= most && fabs(step) <= most && b->dv + fabs(step) * b->p <= most; /* NaN: no */
+  const double dv = b->dv + fabs(step) * b->p;
+  return b->p <= most && fabs(step) <= most && dv <= most && dv <= most * b->scale; /* NaN: no */
 }
 
 /* A step from dv = 0 where b . A b <= 0: downhill, and no farther than the size of the
@@ -205,11 +227,19 @@ static bool descend_without_curvature(const struct cb_stepper *s, size_t thread,
  * looked at before dv is touched, so that dv is finite whatever comes. Once the residual
  * is gone to rounding the work goes on with zero steps: every iteration costs the same,
  * and no 0/0 arises. */
-static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct share own) {
+static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct share own,
+                               double *scale) {
   struct cb_team *team = cb_operator_team(s->op);
   const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
-  ACC rr = start(s, thread, own), enough = rr * (ACC)(roundoff * roundoff);
-  struct bounds bound = {sqrt((double)rr), 0, 0};
+  ACC rr = start(s, thread, own);
+  *scale = scale_of(sqrt((double)rr));
+  if (*scale != 1) {
+    begin_scaled(s, own, *scale);
+    rr = rr * (ACC)*scale * (ACC)*scale;
+    cb_team_barrier(team);
+  }
+  const ACC enough = rr * (ACC)(roundoff * roundoff);
+  struct bounds bound = {.p = sqrt((double)rr), .scale = *scale};
   struct cb_ended ended = {CB_ENDED_ITERATIONS, 0};
   for (size_t k = 0; k < s->parameters.iterations; k++) {
     if (!isfinite((double)rr)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
@@ -240,8 +270,14 @@ static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct
 }
 
 static void solve(struct cb_stepper *s, size_t thread) {
-  const struct cb_ended ended = iterate(s, thread, share_of(s->nodes, s->threads, thread));
+  const struct share own = share_of(s->nodes, s->threads, thread);
+  double scale;
+  const struct cb_ended ended = iterate(s, thread, own, &scale);
   if (thread == 0) s->ended = ended;
+  if (scale == 1) return;
+  const struct share scalars = scalars_of(s->nodes, own);
+  S *dv = s->vector[STEPPER_DV];
+  for (size_t i = scalars.first; i < scalars.last; i++) dv[i] = (S)(dv[i] / scale);
 }
 
 static void advance(struct cb_stepper *s, size_t thread, void *positions, void *velocities) {
