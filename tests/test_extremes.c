@@ -208,10 +208,36 @@ static void states_are_told_apart(void **state) {
   assert_int_equal(cb_extreme_state(&worse), CB_NOT_FINITE);
   cb_extreme_fold(&row, &worse);
   assert_int_equal(cb_extreme_state(&row), CB_NOT_FINITE);
-  strcpy(worse.note, "by method: none");
-  assert_int_equal(cb_extreme_state(&worse), CB_NOT_JUDGED);
+  strcpy(worse.note, "not judged: only a note, which says nothing of the state");
+  assert_int_equal(cb_extreme_state(&worse), CB_NOT_FINITE);
+  worse.why = CB_WHY_METHOD;
+  assert_int_equal(cb_extreme_state(&worse), CB_BY_METHOD);
   cb_extreme_fold(&worse, &row);
   assert_int_equal(cb_extreme_state(&worse), CB_NOT_FINITE);
+}
+
+static struct cb_extreme row_that_is(enum cb_why why, double error, const char *law) {
+  struct cb_extreme row = cb_extreme_blank("values", cb_variant_find("linear/ebe/f64"));
+  row.why = why, row.frame_error = error, row.law = law;
+  return row;
+}
+
+/* The worse one, whatever the order: what is the method's hides no fault of the model's, and
+ * what is not judged hides nothing. */
+static void a_row_is_in_the_worst_state_of_its_cases(void **state) {
+  (void)state;
+  const struct cb_extreme rows[] = {
+      row_that_is(CB_WHY_UNJUDGED, NAN, ""), row_that_is(CB_WHY_MODEL, 1, ""),
+      row_that_is(CB_WHY_METHOD, 1e9, "rotation"), row_that_is(CB_WHY_MODEL, 1e6, ""),
+      row_that_is(CB_WHY_MODEL, 1, "newton")};
+  enum { ROWS = sizeof rows / sizeof *rows };
+  for (int i = 0; i < ROWS; i++)
+    for (int j = 0; j < ROWS; j++) {
+      struct cb_extreme both = rows[i];
+      assert_int_equal(cb_extreme_state(&rows[i]), CB_NOT_JUDGED + i);
+      cb_extreme_fold(&both, &rows[j]);
+      assert_int_equal(cb_extreme_state(&both), CB_NOT_JUDGED + (i > j ? i : j));
+    }
 }
 
 /* ---- as a user --------------------------------------------------------------------- */
@@ -300,6 +326,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(rows_are_complete),
       cmocka_unit_test(the_verb_writes_what_it_found),
       cmocka_unit_test(states_are_told_apart),
+      cmocka_unit_test(a_row_is_in_the_worst_state_of_its_cases),
       cmocka_unit_test(exact_frames_are_those_of_gsl),
       cmocka_unit_test(frames_that_are_not_defined_have_no_condition),
   };

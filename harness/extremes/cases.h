@@ -57,9 +57,6 @@ enum cb_status cb_reference_create(const struct cb_variant *v, const struct cb_c
                                    unsigned long seed, struct cb_reference *r);
 void cb_reference_free(struct cb_reference *r);
 
-/* Does it divide B by the current volume? Then a flat element has no force by the method. */
-bool cb_divides_by_volume(const struct cb_model *model);
-
 /* row[count]: finite, figures, law and note of each case; the rest of the row stays.
  * CB_MEMORY, recorded. */
 enum cb_status cb_cases_measure(const struct cb_variant *v, const struct cb_reference *r,

@@ -7,6 +7,7 @@
 
 #include "harness/error.h"
 #include "harness/extremes/cases.h"
+#include "harness/extremes/exact.h"
 #include "harness/extremes/report.h"
 #include "harness/verify/laws.h"
 #include "reference/oracles.h"
@@ -115,10 +116,6 @@ static void claims(const struct judge *j, enum cb_law law, double value, double 
   if (j->v->model->laws[0] & CB_KEEPS(law)) breaks(j, cb_law_name[law], value, unit, scale);
 }
 
-bool cb_divides_by_volume(const struct cb_model *model) {
-  return strstr(model->name, "-updated-volume") != NULL;
-}
-
 /* Where the answer is finite but its exact value is no number of this arithmetic, or has
  * no value by the method itself, nothing can be judged. */
 static void judge_finite(const struct judge *j) {
@@ -127,11 +124,14 @@ static void judge_finite(const struct judge *j) {
   const bool f = all_finite(12, j->f), y = all_finite(12, j->y) && all_finite(144, j->K);
   row->finite = (!j->R || all_finite(9, j->R)) && f && y;
   if (row->finite || (j->R && !all_finite(9, j->R))) return;
-  if (k->flat && cb_divides_by_volume(j->v->model))
+  if (k->flat && cb_divides_by_volume(j->v->model)) {
+    row->why = CB_WHY_METHOD;
     snprintf(row->note, sizeof row->note, "by method: B is divided by a volume of about 0");
-  else if ((!f && norm(12, k->f) > j->r->most) || (f && !y && norm(12, k->y) > j->r->most))
+  } else if ((!f && norm(12, k->f) > j->r->most) || (f && !y && norm(12, k->y) > j->r->most)) {
+    row->why = CB_WHY_UNJUDGED;
     snprintf(row->note, sizeof row->note, "not judged: the exact %s is no number of %s",
              f ? "product" : "force", j->v->arithmetic->name);
+  }
 }
 
 static void judge_frame(const struct judge *j) {
@@ -198,6 +198,7 @@ static enum cb_status judge_operator(const struct judge *j) {
 static enum cb_status judge_case(const struct judge *j) {
   const struct cb_known *k = j->k;
   if (k->lost) {
+    j->row->why = CB_WHY_UNJUDGED;
     snprintf(j->row->note, sizeof j->row->note, "not judged: no volume at rest is left in %s",
              j->v->arithmetic->name);
     return CB_OK;

@@ -22,6 +22,10 @@ enum cb_definition cb_frame_definition(const struct cb_model *model) {
   return CB_UNDEFINED;
 }
 
+bool cb_divides_by_volume(const struct cb_model *model) {
+  return strstr(model->name, "-updated-volume") != NULL;
+}
+
 /* Where det F < 0 the nearest orthogonal matrix is minus the nearest rotation to -F. */
 static double orthogonal(const double F[9], struct cb_exact_frame *exact, double *sign) {
   double G[9];

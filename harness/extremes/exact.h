@@ -1,5 +1,5 @@
-/* exact.h - what a model's frame is by its definition, in quad precision
- * (reference/exact_frames.h): shares no line with kernels/.
+/* exact.h - what a model is by its method: its frame in quad precision
+ * (reference/exact_frames.h), which shares no line with kernels/; and what it divides by.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef CB_EXACT_H
@@ -15,6 +15,8 @@ enum cb_definition {
 };
 /* Of a model whose elements have the unit vectors as edges at rest, by its name. */
 enum cb_definition cb_frame_definition(const struct cb_model *model);
+/* Does it divide B by the current volume? Then a flat element has no force by the method. */
+bool cb_divides_by_volume(const struct cb_model *model);
 
 /* condition: an error of a rounding in F moves the frame by at most about so many;
  * infinite where the frame jumps or is not defined (R is then not touched):

@@ -12,8 +12,8 @@
 #include "harness/nearest.h"
 #include "harness/progress.h"
 
-const char *const cb_extreme_state_name[CB_EXTREME_STATES] = {"not judged", "right", "inaccurate",
-                                                              "breaks a law", "not finite"};
+const char *const cb_extreme_state_name[CB_EXTREME_STATES] = {
+    "not judged", "right", "by method", "inaccurate", "breaks a law", "not finite"};
 
 /* A hundred times what svd's frame needs here on every shape of full rank (10 in f64); a
  * frame that is wrong has a million in f32 where it is well-conditioned. */
@@ -51,16 +51,12 @@ struct cb_extreme cb_extreme_blank(const char *sweep, const struct cb_variant *v
                              .law = ""};
 }
 
-static bool begins(const char *text, const char *with) {
-  return strncmp(text, with, strlen(with)) == 0;
-}
-
 /* NaN: not measured, by the contract of struct cb_extreme; what is not a number in a
  * kernel is said by `finite`. */
 static bool above(double error) { return !isnan(error) && !(error <= cb_extreme_limit); }
 
 enum cb_extreme_state cb_extreme_state(const struct cb_extreme *row) {
-  if (begins(row->note, "not judged") || begins(row->note, "by method")) return CB_NOT_JUDGED;
+  if (row->why != CB_WHY_MODEL) return row->why == CB_WHY_METHOD ? CB_BY_METHOD : CB_NOT_JUDGED;
   if (!row->finite) return CB_NOT_FINITE;
   if (row->law[0]) return CB_BREAKS;
   if (above(row->frame_error) || above(row->force_error) || above(row->product_error) ||
@@ -81,6 +77,7 @@ void cb_extreme_fold(struct cb_extreme *all, const struct cb_extreme *one) {
   if (!worse) return;
   all->finite = one->finite;
   all->law = one->law;
+  all->why = one->why;
   memcpy(all->note, one->note, sizeof all->note);
 }
 

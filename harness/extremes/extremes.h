@@ -7,6 +7,13 @@
 
 #include "harness/files/table.h"
 
+/* Whose what a row shows is. */
+enum cb_why {
+  CB_WHY_MODEL,    /* the model's: its figures say what state it is in */
+  CB_WHY_UNJUDGED, /* nobody's: there is nothing to hold it against */
+  CB_WHY_METHOD    /* the method's, of which every kernel of it would fail here */
+};
+
 /* One model at one extreme. What a sweep does not measure is NaN and printed as nothing;
  * what is not finite is said by `finite`. Errors are against quad precision, in units of
  * the arithmetic's roundoff times how ill-conditioned the exact answer is. */
@@ -21,6 +28,7 @@ struct cb_extreme {
   double determinant;   /* of R */
   double torque;        /* relative, roundoffs */
   const char *law;      /* the first law that breaks here, or "" */
+  enum cb_why why;      /* not the model's: the note says it in words */
   char note[96];        /* "refused: ..."; "" */
 };
 

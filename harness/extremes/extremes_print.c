@@ -76,7 +76,7 @@ static struct cell cell_of(const struct cb_extremes *all, const char *sweep,
 struct cb_table *cb_extremes_map(const struct cb_extremes *all) {
   struct cb_table *t = cb_table_create(
       "sweep,model,storage,arithmetic,state,rank,first_parameter,first_value,first_broken_law,"
-      "rows,right,inaccurate,breaks_a_law,not_finite,not_judged,note");
+      "rows,right,by_method,inaccurate,breaks_a_law,not_finite,not_judged,note");
   for (size_t s = 0; t && cb_sweeps[s]; s++)
     for (size_t v = 0; all->variants[v]; v++) {
       const struct cb_variant *variant = all->variants[v];

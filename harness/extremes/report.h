@@ -10,8 +10,9 @@
 
 /* From good to bad, the order of the map. */
 enum cb_extreme_state {
-  CB_NOT_JUDGED, /* the note begins with "not judged" or "by method" and says why */
+  CB_NOT_JUDGED, /* there is nothing to hold it against: the note says why */
   CB_RIGHT,
+  CB_BY_METHOD,  /* not finite, a law or an error, but the method's: the note says why */
   CB_INACCURATE, /* keeps its laws, an error is above the limit */
   CB_BREAKS,     /* a law that the model claims */
   CB_NOT_FINITE,

@@ -20,8 +20,8 @@ static const char doc[] =
     "(frames and forces of elements that are turned inside out) and extremes-steps.csv (the "
     "largest stable steps, a million steps)."
     "\vAn error is in roundings of the arithmetic times the condition of the exact answer; above "
-    "1000 it is inaccurate. Not judged: the exact answer is no number of the arithmetic, or the "
-    "method has none there.";
+    "1000 it is inaccurate. Not judged: the exact answer is no number of the arithmetic. By "
+    "method: every kernel of that method fails there, and the note says why.";
 
 enum { KEY_SWEEP = 0x4000 };
 static const struct argp_option own_options[] = {
