@@ -19,22 +19,32 @@ const char *const cb_extreme_state_name[CB_EXTREME_STATES] = {
  * frame that is wrong has a million in f32 where it is well-conditioned. */
 const double cb_extreme_limit = 1e3;
 
+/* Room for one more: they are full when their number is a power of two, or 0. NULL: none. */
+static void *with_room(void *rows, size_t count, size_t size) {
+  return count & (count - 1) ? rows : realloc(rows, (2 * count + !count) * size);
+}
+
 enum cb_status cb_extremes_add(struct cb_extremes *all, const struct cb_extreme *row) {
-  if (all->count == all->room) {
-    const size_t room = all->room ? 2 * all->room : 1024;
-    struct cb_extreme *more = realloc(all->row, room * sizeof *more);
-    if (!more) return cb_fail_memory("the rows of the extremes");
-    all->row = more, all->room = room;
-  }
+  struct cb_extreme *more = with_room(all->row, all->count, sizeof *more);
+  if (!more) return cb_fail_memory("the rows of the extremes");
+  all->row = more;
   all->row[all->count++] = *row;
+  return CB_OK;
+}
+
+enum cb_status cb_extremes_add_step(struct cb_extremes *all, const struct cb_extreme_step *step) {
+  struct cb_extreme_step *more = with_room(all->step, all->step_count, sizeof *more);
+  if (!more) return cb_fail_memory("the rows of the steps");
+  all->step = more;
+  all->step[all->step_count++] = *step;
   return CB_OK;
 }
 
 void cb_extremes_free(struct cb_extremes *all) {
   free(all->row);
-  cb_table_free(all->steps);
-  all->steps = NULL;
-  all->row = NULL, all->count = all->room = 0;
+  free(all->step);
+  all->row = NULL, all->count = 0;
+  all->step = NULL, all->step_count = all->parts = 0;
 }
 
 struct cb_extreme cb_extreme_blank(const char *sweep, const struct cb_variant *variant) {
@@ -81,21 +91,28 @@ void cb_extreme_fold(struct cb_extreme *all, const struct cb_extreme *one) {
   memcpy(all->note, one->note, sizeof all->note);
 }
 
-enum cb_status cb_extremes_run(const char *sweep, struct cb_extremes *all) {
-  enum cb_status status = CB_OK;
+enum cb_status cb_extremes_check(const char *sweep) {
   struct cb_nearest nearest = {.text = sweep};
-  bool found = false;
+  for (size_t s = 0; cb_sweeps[s]; s++) {
+    if (!sweep || strcmp(sweep, cb_sweeps[s]->name) == 0) return CB_OK;
+    cb_nearest_offer(&nearest, cb_sweeps[s]->name);
+  }
+  return cb_fail(CB_INPUT, "there is no sweep '%s' (nearest: %s); see 'corobench extremes --help'",
+                 sweep, nearest.names);
+}
+
+static enum cb_status run_whole(struct cb_extremes *all, const void *context) {
+  const struct cb_sweep *const *sweep = context;
+  return (*sweep)->run(all);
+}
+
+enum cb_status cb_extremes_run(const char *sweep, struct cb_extremes *all) {
+  enum cb_status status = cb_extremes_check(sweep);
   for (size_t s = 0; !status && cb_sweeps[s]; s++) {
-    if (sweep) cb_nearest_offer(&nearest, cb_sweeps[s]->name);
     if (sweep && strcmp(sweep, cb_sweeps[s]->name) != 0) continue;
-    found = true;
-    status = cb_sweeps[s]->run(all);
+    status = cb_extremes_part(all, cb_sweeps[s]->name, run_whole, &cb_sweeps[s]);
     if (!status && cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted; no table");
   }
-  if (!found)
-    status =
-        cb_fail(CB_INPUT, "there is no sweep '%s' (nearest: %s); see 'corobench extremes --help'",
-                sweep, nearest.names);
   if (status) cb_extremes_free(all);
   return status;
 }

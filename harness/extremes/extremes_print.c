@@ -51,6 +51,25 @@ struct cb_table *cb_extremes_rows(const struct cb_extremes *all) {
   return t;
 }
 
+struct cb_table *cb_extremes_steps(const struct cb_extremes *all) {
+  struct cb_table *t = cb_table_create("variant,integrator,what,step_s,steps,finite,most_energy,"
+                                       "end_energy,momentum_change,angular_change");
+  for (size_t i = 0; t && i < all->step_count; i++) {
+    const struct cb_extreme_step *s = &all->step[i];
+    variant_name(t, s->variant);
+    cb_table_text(t, s->integrator);
+    cb_table_text(t, s->what);
+    cb_table_number(t, s->h);
+    cb_table_integer(t, (long long)s->steps);
+    cb_table_text(t, s->finite ? "yes" : "no");
+    exactly(t, s->most);
+    exactly(t, s->energy);
+    exactly(t, s->momentum);
+    exactly(t, s->angular);
+  }
+  return t;
+}
+
 /* ---- one cell for all rows of a variant in a sweep ------------------------------------ */
 
 struct cell {
