@@ -10,15 +10,15 @@ models = first(2)
 sweeps = first(1)
 total(s) = system("awk -F, '$1 == \"" . s . "\" {print $10; exit}' " . map)
 precisions = "f64 f32"
-# x, y, state 0 to 4, label: the worst of all arithmetics of that precision. A letter for
+# x, y, state 0 to 5, label: the worst of all arithmetics of that precision. A letter for
 # the state, and how many rows are in it.
 cells(p) = "< awk -F, 'NR > 1 && $4 ~ /^" . p . "/ {" . \
   "if (!($1 in x)) x[$1] = ++columns; if (!($2 in y)) y[$2] = ++lines; k = x[$1] \",\" y[$2];" . \
-  "n = $6 == 2 ? $12 : $6 == 3 ? $13 : $6 == 4 ? $14 : 0;" . \
+  "n = $6 > 1 ? $($6 + 10) : 0;" . \
   "if (!(k in rank) || $6 > rank[k]) {rank[k] = $6; count[k] = n}" . \
   "else if ($6 == rank[k] && n > count[k]) count[k] = n}" . \
   "END {print \"x,y,state,label\"; for (k in rank) print k \",\" rank[k] \",\" " . \
-  "substr(\"-.iLX\", rank[k] + 1, 1) (count[k] ? count[k] : \"\")}' " . map
+  "substr(\"-.miLX\", rank[k] + 1, 1) (count[k] ? count[k] : \"\")}' " . map
 family(m) = system("echo " . m . " | sed -E 's/-(precomputed|updated|updated-volume|exact|lazy|tuned|tangent|tangent-clamped)$//'")
 
 cell_w = 46.0; cell_h = 19.0
@@ -26,8 +26,8 @@ left = 235.0; between = 40.0; top = 170.0; bottom = 95.0
 panel = cell_w * words(sweeps)
 width = left + 2 * panel + between + 15
 height = top + cell_h * words(models) + bottom
-array SHADE[5] = ["#ffffff", "#ffffff", "#f2dc8c", "#e07b30", "#6b0f1a"]
-array MEANING[5] = ["- not judged", ". right", "i inaccurate: more than 1000 roundings times the condition", \
+array SHADE[6] = ["#ffffff", "#ffffff", "#dde6ee", "#f2dc8c", "#e07b30", "#6b0f1a"]
+array MEANING[6] = ["- not judged", ". right", "m by method: the note says why", "i inaccurate: more than 1000 roundings times the condition", \
   "L breaks a law that it claims", "X not finite"]
 
 rowlabels = ""; blanks = ""; columns = ""
@@ -58,7 +58,7 @@ do for [kind in "svg png"] {
     }
   }
   at = 20
-  do for [i = 1:5] {
+  do for [i = 1:6] {
     set object 10 + i rectangle at screen at / width, screen 62.0 / height size screen 16.0 / width, \
       screen 14.0 / height fillcolor rgb SHADE[i] fillstyle solid border linecolor "#404040"
     set label 10 + i MEANING[i] at screen (at + 14.0) / width, screen 62.0 / height font ",10" noenhanced
@@ -70,15 +70,15 @@ do for [kind in "svg png"] {
     set tmargin at screen 1 - top / height; set bmargin at screen bottom / height
     eval "set ytics scale 0 noenhanced font ',9' (" . (p == 1 ? rowlabels : blanks) . ")"
     set label 2 word(precisions, p) . ", scalar and in lanes" at graph 0.5, screen 1 - 42.0 / height center font ",12"
-    plot for [s = 0:4] cells(word(precisions, p)) \
+    plot for [s = 0:5] cells(word(precisions, p)) \
         using (column("state") == s ? column("x") : NaN):"y":(0.5):(0.5) with boxxyerror \
         fillcolor rgb SHADE[s + 1] fillstyle solid border linecolor "#c0c0c0", \
-      cells(word(precisions, p)) using (column("state") < 4 ? column("x") : NaN):"y":(strcol("label")) \
+      cells(word(precisions, p)) using (column("state") < 5 ? column("x") : NaN):"y":(strcol("label")) \
         with labels font ",8" textcolor "#000000" noenhanced, \
-      cells(word(precisions, p)) using (column("state") == 4 ? column("x") : NaN):"y":(strcol("label")) \
+      cells(word(precisions, p)) using (column("state") == 5 ? column("x") : NaN):"y":(strcol("label")) \
         with labels font ",8" textcolor "#ffffff" noenhanced
     unset label 1 # once is enough
-    unset for [i = 11:15] label i
+    unset for [i = 11:16] label i
   }
   unset multiplot
   unset output

@@ -13,7 +13,7 @@
 #define CB_SUFFIX f64
 #include "kernels/elements.h"
 
-/* ---- svd-updated/ebe/f64, spoilt ------------------------------------------------------ */
+/* ---- a variant, spoilt ------------------------------------------------------ */
 
 static enum {
   NOTHING,
@@ -23,6 +23,8 @@ static enum {
   FRAME_NAN,
   FORCE_PUSHED,
   FORCE_TWISTED,
+  OBLIQUE_PUSHED, /* where no edge is in a plane of the axes */
+  OBLIQUE_SCALED,
   FORCE_JUMPS,
   FORCE_NAN,
   PRODUCT_SKEW,
@@ -55,9 +57,12 @@ static void spoilt_update(struct cb_elements *E, size_t thread, const void *x, c
   const double *p = x;
   sound_form()->update(E, thread, x, v, h, out);
   for (size_t i = 0; i < 3 * E->nodes; i += 12) {
+    bool oblique = true;
+    for (size_t j = i + 3; j < i + 12; j++) oblique = oblique && p[j] != 0;
     const double size = fabs(f[i]) + fabs(f[i + 4]) + fabs(f[i + 8]);
-    if (fault == FORCE_PUSHED) f[i] += 1e-6 * size;
+    if (fault == FORCE_PUSHED || (fault == OBLIQUE_PUSHED && oblique)) f[i] += 1e-6 * size;
     if (fault == FORCE_TWISTED) f[i + 1] += 1e-6 * size, f[i + 4] -= 1e-6 * size;
+    for (size_t j = i; fault == OBLIQUE_SCALED && oblique && j < i + 12; j++) f[j] *= 1 + 3e-8;
     if (fault == FORCE_NAN && i == 24) f[i] = NAN;
     for (size_t j = i; fault == FORCE_JUMPS && p[i + 11] < 0.5 && j < i + 12; j++) f[j] = -f[j];
   }
@@ -73,15 +78,15 @@ static void spoilt_product(const struct cb_elements *E, size_t thread, const voi
   }
 }
 
-/* Rows of one sweep on it. Free with cb_extremes_free. */
-static struct cb_extremes spoilt(int how, const char *sweep) {
+/* Rows of one sweep on it, of ebe in f64. Free with cb_extremes_free. */
+static struct cb_extremes spoilt_model(const char *name, int how, const char *sweep) {
   static struct cb_model model;
   static struct cb_variant variant;
   static const struct cb_variant *list[2];
-  sound = cb_variant_find("svd-updated/ebe/f64");
+  sound = cb_variant_find(name);
   assert_non_null(sound);
   model = *sound->model;
-  model.frame = spoilt_frame;
+  if (model.frame) model.frame = spoilt_frame;
   model.form[CB_EBE][0].update = spoilt_update;
   model.form[CB_EBE][0].product = spoilt_product;
   variant = *sound, variant.model = &model, list[0] = &variant;
@@ -90,6 +95,10 @@ static struct cb_extremes spoilt(int how, const char *sweep) {
   assert_int_equal(cb_extremes_run(sweep, &all), CB_OK);
   assert_true(all.count > 0);
   return all;
+}
+
+static struct cb_extremes spoilt(int how, const char *sweep) {
+  return spoilt_model("svd-updated/ebe/f64", how, sweep);
 }
 
 /* How many rows are in that state and (law not NULL) break that law. */
@@ -208,10 +217,107 @@ static void states_are_told_apart(void **state) {
   assert_int_equal(cb_extreme_state(&worse), CB_NOT_FINITE);
   cb_extreme_fold(&row, &worse);
   assert_int_equal(cb_extreme_state(&row), CB_NOT_FINITE);
-  strcpy(worse.note, "by method: none");
-  assert_int_equal(cb_extreme_state(&worse), CB_NOT_JUDGED);
+  strcpy(worse.note, "not judged: only a note, which says nothing of the state");
+  assert_int_equal(cb_extreme_state(&worse), CB_NOT_FINITE);
+  worse.why = CB_WHY_METHOD;
+  assert_int_equal(cb_extreme_state(&worse), CB_BY_METHOD);
   cb_extreme_fold(&worse, &row);
   assert_int_equal(cb_extreme_state(&worse), CB_NOT_FINITE);
+}
+
+static struct cb_extreme row_that_is(enum cb_why why, double error, const char *law) {
+  struct cb_extreme row = cb_extreme_blank("values", cb_variant_find("linear/ebe/f64"));
+  row.why = why, row.frame_error = error, row.law = law;
+  return row;
+}
+
+/* The worse one, whatever the order: what is the method's hides no fault of the model's, and
+ * what is not judged hides nothing. */
+static void a_row_is_in_the_worst_state_of_its_cases(void **state) {
+  (void)state;
+  const struct cb_extreme rows[] = {
+      row_that_is(CB_WHY_UNJUDGED, NAN, ""), row_that_is(CB_WHY_MODEL, 1, ""),
+      row_that_is(CB_WHY_METHOD, 1e9, "rotation"), row_that_is(CB_WHY_MODEL, 1e6, ""),
+      row_that_is(CB_WHY_MODEL, 1, "newton")};
+  enum { ROWS = sizeof rows / sizeof *rows };
+  for (int i = 0; i < ROWS; i++)
+    for (int j = 0; j < ROWS; j++) {
+      struct cb_extreme both = rows[i];
+      assert_int_equal(cb_extreme_state(&rows[i]), CB_NOT_JUDGED + i);
+      cb_extreme_fold(&both, &rows[j]);
+      assert_int_equal(cb_extreme_state(&both), CB_NOT_JUDGED + (i > j ? i : j));
+    }
+}
+
+/* ---- whose it is ------------------------------------------------------------------- */
+
+static enum cb_extreme_state state_of(const struct cb_extremes *all, const char *parameter) {
+  for (size_t i = 0; i < all->count; i++)
+    if (strcmp(all->row[i].parameter, parameter) == 0) return cb_extreme_state(&all->row[i]);
+  fail_msg("no row '%s'", parameter);
+  return CB_NOT_JUDGED;
+}
+
+/* The same fault, small beside what the method loses on the worse shape, and not on the
+ * better one; and without one, nothing is worse than by method. */
+static void assert_method_explains(const char *method, const char *other, int how,
+                                   const char *better, const char *worse, const char *says) {
+  struct cb_extremes all = spoilt_model(other, how, "values");
+  assert_int_equal(rows_in(&all, CB_BY_METHOD, NULL), 0);
+  assert_int_equal(state_of(&all, better), CB_INACCURATE);
+  assert_int_equal(state_of(&all, worse), CB_INACCURATE);
+  cb_extremes_free(&all);
+  all = spoilt_model(method, how, "values");
+  assert_int_equal(state_of(&all, better), CB_INACCURATE);
+  assert_int_equal(state_of(&all, worse), CB_BY_METHOD);
+  cb_extremes_free(&all);
+  all = spoilt_model(method, NOTHING, "values");
+  size_t named = 0;
+  for (size_t i = 0; i < all.count; i++) {
+    assert_true(cb_extreme_state(&all.row[i]) <= CB_BY_METHOD);
+    named += strstr(all.row[i].note, says) != NULL;
+  }
+  assert_true(named > 0 && named < all.count);
+  cb_extremes_free(&all);
+}
+
+static void what_a_method_loses_is_the_methods(void **state) {
+  (void)state;
+  assert_method_explains("polar-eigen-updated/ebe/f64", "svd-updated/ebe/f64", FRAME_TURNED,
+                         "values 1 1 1", "values 1 0.0001 0.0001", "squares the condition");
+  assert_method_explains("svd-updated-volume/ebe/f64", "svd-updated/ebe/f64", OBLIQUE_SCALED,
+                         "values 1 0.01 0.01", "values 1 0.0001 0.0001", "divided by a volume");
+}
+
+/* A law that the method's rounding says nothing of stays broken, however large that is. */
+static void other_laws_are_never_the_methods(void **state) {
+  (void)state;
+  static const char *const methods[] = {"polar-eigen-updated/ebe/f64",
+                                        "svd-updated-volume/ebe/f64"};
+  for (int n = 0; n < 2; n++) {
+    struct cb_extremes all = spoilt_model(methods[n], OBLIQUE_PUSHED, "values");
+    assert_int_equal(state_of(&all, "values 1 0.0001 0.0001"), CB_BREAKS);
+    assert_true(rows_in(&all, CB_BREAKS, "newton") > 5);
+    cb_extremes_free(&all);
+  }
+}
+
+/* Where its frames are not defined, on a line and in a point, nothing is asked of it. */
+static void frames_of_nodes_are_judged_where_they_are_defined(void **state) {
+  (void)state;
+  static const char name[] = "node-warp/ebe/f64";
+  static const char *const sweeps[] = {"values", "inverted", "flat", "collapsed", "inputs"};
+  for (size_t s = 0; s < sizeof sweeps / sizeof *sweeps; s++) {
+    struct cb_extremes all = spoilt_model(name, NOTHING, sweeps[s]);
+    assert_int_equal(rows_in(&all, CB_RIGHT, NULL), all.count);
+    cb_extremes_free(&all);
+  }
+  struct cb_extremes all = spoilt_model(name, FORCE_PUSHED, "inversion");
+  assert_int_equal(rows_in(&all, CB_BREAKS, "rotation"), all.count);
+  cb_extremes_free(&all);
+  all = spoilt_model(name, FORCE_PUSHED, "flat");
+  assert_int_equal(state_of(&all, "values 1 0.01 0"), CB_BREAKS);
+  cb_extremes_free(&all);
 }
 
 /* ---- as a user --------------------------------------------------------------------- */
@@ -300,6 +406,10 @@ int main(int argc, char **argv) {
       cmocka_unit_test(rows_are_complete),
       cmocka_unit_test(the_verb_writes_what_it_found),
       cmocka_unit_test(states_are_told_apart),
+      cmocka_unit_test(a_row_is_in_the_worst_state_of_its_cases),
+      cmocka_unit_test(what_a_method_loses_is_the_methods),
+      cmocka_unit_test(other_laws_are_never_the_methods),
+      cmocka_unit_test(frames_of_nodes_are_judged_where_they_are_defined),
       cmocka_unit_test(exact_frames_are_those_of_gsl),
       cmocka_unit_test(frames_that_are_not_defined_have_no_condition),
   };

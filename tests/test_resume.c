@@ -1,8 +1,9 @@
-/* test_resume.c - runs of bench and trade, killed at random moments and resumed: no finished row
- * is lost, and in the end there are the rows of a run that nobody has killed.
+/* test_resume.c - runs of bench, trade and extremes, killed at random moments and resumed: no
+ * finished row is lost, and in the end there are the rows of a run that nobody has killed.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <gsl/gsl_rng.h>
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -18,23 +19,32 @@
 #include "tests/process.h"
 #include "tests/tally.h"
 
-/* A verb that keeps a journal, and what tells its rows apart: the first columns of its file. */
+/* A verb that keeps a journal, and what tells its rows apart: the first columns of its files. */
+enum { FILES = 2 };
 struct verb {
-  const char *name, *results;
+  const char *name, *results[FILES]; /* the second may be NULL */
   int columns;
   const char *words[16];
 };
 static const struct verb BENCH = {"bench",
-                                  "bench.csv",
+                                  {"bench.csv"},
                                   6,
                                   {"--quick", "--seconds", "1", "--figure", "memory", "--figure",
                                    "4", "--figure", "7", "--variant", "qr-updated/ebe/f64",
                                    "--threads", "1"}};
 static const struct verb TRADE = {"trade",
-                                  "trade.csv",
+                                  {"trade.csv"},
                                   11,
                                   {"tests/fuzz/corpus/scene/loads.json", "--quick", "--variant",
                                    "qr-updated/*", "--variant", "linear"}};
+
+/* Nothing is timed: all columns are the same again. Without a row that breaks. */
+static const struct verb EXTREMES = {"extremes",
+                                     {"extremes.csv", "extremes-steps.csv"},
+                                     INT_MAX,
+                                     {"--variant", "linear/ebe/f64", "--variant",
+                                      "qr-updated/ebe/f64", "--variant",
+                                      "svd-updated-volume/ebe/f64"}};
 
 static double clock_s(void) {
   struct timespec now;
@@ -87,10 +97,11 @@ static bool killed_after(const struct verb *v, const char *directory, double sec
   return false;
 }
 
-/* What tells the rows apart, a line each; to be freed. */
-static char *rows_of(const struct verb *v, const char *directory) {
+/* What tells the rows of that file apart, a line each; to be freed. */
+static char *rows_of(const struct verb *v, int file, const char *directory) {
+  if (!v->results[file]) return strdup("");
   char path[512];
-  snprintf(path, sizeof path, "%s/%s", directory, v->results);
+  snprintf(path, sizeof path, "%s/%s", directory, v->results[file]);
   char *text = read_text(path), *to = text;
   assert_true(lines(text) > 5);
   for (char *line = text; *line;) {
@@ -145,7 +156,8 @@ static void survive(const struct verb *v, size_t kills) {
   const double longest = clock_s() - begin;
   assert_done(&p);
   process_free(&p);
-  char *expected = rows_of(v, whole);
+  char *expected[FILES];
+  for (int i = 0; i < FILES; i++) expected[i] = rows_of(v, i, whole);
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
   assert_non_null(rng);
   size_t killed = 0, finished = 0;
@@ -156,15 +168,18 @@ static void survive(const struct verb *v, size_t kills) {
     p = process_run(argv, environ, NULL);
     assert_done(&p);
     process_free(&p);
-    char *found = rows_of(v, broken), *left = journal_of(v, broken);
-    assert_string_equal(found, expected);
+    for (int i = 0; i < FILES; i++) {
+      char *found = rows_of(v, i, broken);
+      assert_string_equal(found, expected[i]);
+      free(found);
+    }
+    char *left = journal_of(v, broken);
     assert_string_equal(left, "");
-    finished++;
-    free(found);
     free(left);
+    finished++;
   }
   gsl_rng_free(rng);
-  free(expected);
+  for (int i = 0; i < FILES; i++) free(expected[i]);
   char what[64];
   snprintf(what, sizeof what, "kills of %s survived", v->name);
   tally(what, killed);
@@ -190,6 +205,13 @@ static void bench_survives(void **state) {
 static void trade_survives(void **state) {
   (void)state;
   survive(&TRADE, kills_of(4));
+}
+
+static void extremes_survives(void **state) {
+  (void)state;
+  survive(&EXTREMES, kills_of(6));
+  assert_refused(run_words(NULL, (const char *const[]){"extremes", "--resume", NULL}),
+                 "--resume needs the --output directory");
 }
 
 /* ---- how it is told ------------------------------------------------------------------------ */
@@ -274,6 +296,7 @@ int main(int argc, char **argv) {
   find_program(argv[0]);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bench_survives), cmocka_unit_test(trade_survives),
-      cmocka_unit_test(rows_tell_their_session), cmocka_unit_test(an_interrupt_says_how_to_go_on)};
+      cmocka_unit_test(extremes_survives), cmocka_unit_test(rows_tell_their_session),
+      cmocka_unit_test(an_interrupt_says_how_to_go_on)};
   return cmocka_run_group_tests(tests, temporary_make, temporary_remove);
 }

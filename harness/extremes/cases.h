@@ -41,6 +41,8 @@ struct cb_known {
   bool flat;   /* of no volume now, or of one that is lost in rounding */
   bool lost;   /* of no volume at rest: rounded away */
   double R[9], condition;
+  double triple;        /* the products that make the volume, all taken as positive, by the volume:
+                           a rounding of each moves it by up to so many */
   double f[12], f_unit; /* N; NaN: not known */
   double y[12], y_unit; /* K u, N/m of u */
 };
@@ -57,13 +59,15 @@ enum cb_status cb_reference_create(const struct cb_variant *v, const struct cb_c
                                    unsigned long seed, struct cb_reference *r);
 void cb_reference_free(struct cb_reference *r);
 
-/* Does it divide B by the current volume? Then a flat element has no force by the method. */
-bool cb_divides_by_volume(const struct cb_model *model);
-
 /* row[count]: finite, figures, law and note of each case; the rest of the row stays.
  * CB_MEMORY, recorded. */
 enum cb_status cb_cases_measure(const struct cb_variant *v, const struct cb_reference *r,
                                 struct cb_extreme *row);
+
+/* A row that is inaccurate, or breaks no law but `rotation` (by `turned` units of the force,
+ * NaN: not measured), where the method's own rounding explains all of it: is the method's. */
+void cb_method_judge(const struct cb_variant *v, const struct cb_reference *r,
+                     const struct cb_known *k, double turned, struct cb_extreme *row);
 
 /* row->parameter, value (and note) := those of row n of a sweep. */
 typedef void cb_row_name_fn(const void *context, size_t n, struct cb_extreme *row);

@@ -7,6 +7,7 @@
 
 #include "harness/error.h"
 #include "harness/extremes/cases.h"
+#include "harness/extremes/exact.h"
 #include "harness/extremes/report.h"
 #include "harness/verify/laws.h"
 #include "reference/oracles.h"
@@ -115,10 +116,6 @@ static void claims(const struct judge *j, enum cb_law law, double value, double 
   if (j->v->model->laws[0] & CB_KEEPS(law)) breaks(j, cb_law_name[law], value, unit, scale);
 }
 
-bool cb_divides_by_volume(const struct cb_model *model) {
-  return strstr(model->name, "-updated-volume") != NULL;
-}
-
 /* Where the answer is finite but its exact value is no number of this arithmetic, or has
  * no value by the method itself, nothing can be judged. */
 static void judge_finite(const struct judge *j) {
@@ -127,11 +124,14 @@ static void judge_finite(const struct judge *j) {
   const bool f = all_finite(12, j->f), y = all_finite(12, j->y) && all_finite(144, j->K);
   row->finite = (!j->R || all_finite(9, j->R)) && f && y;
   if (row->finite || (j->R && !all_finite(9, j->R))) return;
-  if (k->flat && cb_divides_by_volume(j->v->model))
+  if (k->flat && cb_divides_by_volume(j->v->model)) {
+    row->why = CB_WHY_METHOD;
     snprintf(row->note, sizeof row->note, "by method: B is divided by a volume of about 0");
-  else if ((!f && norm(12, k->f) > j->r->most) || (f && !y && norm(12, k->y) > j->r->most))
+  } else if ((!f && norm(12, k->f) > j->r->most) || (f && !y && norm(12, k->y) > j->r->most)) {
+    row->why = CB_WHY_UNJUDGED;
     snprintf(row->note, sizeof row->note, "not judged: the exact %s is no number of %s",
              f ? "product" : "force", j->v->arithmetic->name);
+  }
 }
 
 static void judge_frame(const struct judge *j) {
@@ -158,7 +158,7 @@ static void judge_frame(const struct judge *j) {
 static void judge_force(const struct judge *j) {
   const struct cb_known *k = j->k;
   const double *f = j->f;
-  double sum[3] = {0}, torque[3] = {0}, back[12], arm = 0;
+  double sum[3] = {0}, torque[3] = {0}, arm = 0;
   for (int i = 0; i < 12; i += 3) {
     const double a[3] = {j->x[i] - j->x[0], j->x[i + 1] - j->x[1], j->x[i + 2] - j->x[2]};
     arm = fmax(arm, norm(3, a));
@@ -166,7 +166,6 @@ static void judge_force(const struct judge *j) {
       const int p = (n + 1) % 3, q = (n + 2) % 3;
       sum[n] += f[i + n];
       torque[n] += a[p] * f[i + q] - a[q] * f[i + p];
-      back[i + p] = j->turned[i + n];
     }
   }
   j->row->force_error = distance(12, f, k->f) / k->f_unit;
@@ -175,7 +174,15 @@ static void judge_force(const struct judge *j) {
   const double size = norm(12, f);
   claims(j, CB_LAW_NEWTON, norm(3, sum), k->f_unit, size);
   claims(j, CB_LAW_EULER, norm(3, torque), arm * k->f_unit, arm * size);
-  claims(j, CB_LAW_ROTATION, distance(12, f, back), k->f_unit, size);
+}
+
+/* The last of all: a row that names it breaks no other. By how much, in units. */
+static double judge_rotation(const struct judge *j) {
+  double back[12];
+  for (int i = 0; i < 12; i++) back[i / 3 * 3 + (i + 1) % 3] = j->turned[i];
+  const double apart = distance(12, j->f, back), unit = j->k->f_unit;
+  claims(j, CB_LAW_ROTATION, apart, unit, norm(12, j->f));
+  return isnan(apart) ? HUGE_VAL : apart / unit;
 }
 
 static enum cb_status judge_operator(const struct judge *j) {
@@ -198,6 +205,7 @@ static enum cb_status judge_operator(const struct judge *j) {
 static enum cb_status judge_case(const struct judge *j) {
   const struct cb_known *k = j->k;
   if (k->lost) {
+    j->row->why = CB_WHY_UNJUDGED;
     snprintf(j->row->note, sizeof j->row->note, "not judged: no volume at rest is left in %s",
              j->v->arithmetic->name);
     return CB_OK;
@@ -205,9 +213,12 @@ static enum cb_status judge_case(const struct judge *j) {
   judge_finite(j);
   if (!j->row->finite) return CB_OK;
   judge_frame(j);
-  if (k->jumps || (k->flat && cb_divides_by_volume(j->v->model))) return CB_OK;
-  if (isfinite(k->f_unit)) judge_force(j);
-  return isfinite(k->y_unit) ? judge_operator(j) : CB_OK;
+  const bool forced = !k->jumps && isfinite(k->f_unit);
+  if (forced) judge_force(j);
+  enum cb_status status = !k->jumps && isfinite(k->y_unit) ? judge_operator(j) : CB_OK;
+  const double turned = forced ? judge_rotation(j) : NAN;
+  cb_method_judge(j->v, j->r, k, turned, j->row);
+  return status;
 }
 
 enum cb_status cb_cases_measure(const struct cb_variant *v, const struct cb_reference *r,

@@ -37,27 +37,34 @@ static double longest(const double *x) {
 
 typedef __float128 quad;
 
+static quad magnitude(quad a) { return a < 0 ? -a : a; }
+
 /* |edges| |cofactors| / |volume|, in quad: what a rounding of the edges is for the volume;
- * infinite where that is 0. */
-static double volume_condition(const double *x) {
-  quad e[9], cofactor, volume = 0;
+ * *triple: what one of each product in it is (cases.h). Infinite where the volume is 0. */
+static double volume_condition(const double *x, double *triple) {
+  quad e[9], volume = 0, products = 0;
   double edges[9], cofactors[9];
   for (int i = 0; i < 9; i++) edges[i] = (double)(e[i] = (quad)x[3 + i] - x[i % 3]);
   for (int i = 0; i < 9; i++) {
     const int a = (i / 3 + 1) % 3 * 3, b = (i / 3 + 2) % 3 * 3, c = (i + 1) % 3, d = (i + 2) % 3;
-    cofactor = e[a + c] * e[b + d] - e[a + d] * e[b + c];
-    cofactors[i] = (double)cofactor;
-    if (i < 3) volume += e[i] * cofactor;
+    const quad one = e[a + c] * e[b + d], other = e[a + d] * e[b + c];
+    cofactors[i] = (double)(one - other);
+    if (i >= 3) continue;
+    volume += e[i] * (one - other);
+    products += magnitude(e[i]) * (magnitude(one) + magnitude(other));
   }
-  return volume == 0 ? HUGE_VAL : norm(9, edges) * norm(9, cofactors) / fabs((double)volume);
+  volume = magnitude(volume);
+  *triple = volume == 0 ? HUGE_VAL : (double)(products / volume);
+  return volume == 0 ? HUGE_VAL : norm(9, edges) * norm(9, cofactors) / (double)volume;
 }
 
 static void know_shape(const struct cb_variant *v, struct cb_reference *r, size_t n) {
   struct cb_known *k = &r->known[n];
   const double *x = r->cases.x + 12 * n;
   const enum cb_definition definition = cb_frame_definition(v->model);
-  k->flat = !(volume_condition(x) * r->roundoff < cb_well_conditioned);
-  k->lost = isinf(volume_condition(r->cases.X + 12 * n));
+  double at_rest;
+  k->flat = !(volume_condition(x, &k->triple) * r->roundoff < cb_well_conditioned);
+  k->lost = isinf(volume_condition(r->cases.X + 12 * n, &at_rest));
   if (!r->cases.unit || definition == CB_UNDEFINED) return;
   double F[9];
   for (int i = 0; i < 9; i++) F[i] = x[3 + i % 3 * 3 + i / 3];

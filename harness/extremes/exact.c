@@ -16,10 +16,19 @@ enum cb_definition cb_frame_definition(const struct cb_model *model) {
                {"polar", CB_NEAREST_ROTATION},
                {"svd", CB_NEAREST_ROTATION},
                {"qr", CB_GRAM_SCHMIDT}};
+  if (model->node_frames) return CB_NEAREST_ROTATION;
   for (size_t i = 0; model->frame && i < sizeof known / sizeof *known; i++)
     if (strncmp(model->name, known[i].begin, strlen(known[i].begin)) == 0)
       return known[i].definition;
   return CB_UNDEFINED;
+}
+
+bool cb_divides_by_volume(const struct cb_model *model) {
+  return strstr(model->name, "-updated-volume") != NULL;
+}
+
+bool cb_squares_condition(const struct cb_model *model) {
+  return strncmp(model->name, "polar-eigen", strlen("polar-eigen")) == 0;
 }
 
 /* Where det F < 0 the nearest orthogonal matrix is minus the nearest rotation to -F. */

@@ -51,6 +51,25 @@ struct cb_table *cb_extremes_rows(const struct cb_extremes *all) {
   return t;
 }
 
+struct cb_table *cb_extremes_steps(const struct cb_extremes *all) {
+  struct cb_table *t = cb_table_create("variant,integrator,what,step_s,steps,finite,most_energy,"
+                                       "end_energy,momentum_change,angular_change");
+  for (size_t i = 0; t && i < all->step_count; i++) {
+    const struct cb_extreme_step *s = &all->step[i];
+    variant_name(t, s->variant);
+    cb_table_text(t, s->integrator);
+    cb_table_text(t, s->what);
+    cb_table_number(t, s->h);
+    cb_table_integer(t, (long long)s->steps);
+    cb_table_text(t, s->finite ? "yes" : "no");
+    exactly(t, s->most);
+    exactly(t, s->energy);
+    exactly(t, s->momentum);
+    exactly(t, s->angular);
+  }
+  return t;
+}
+
 /* ---- one cell for all rows of a variant in a sweep ------------------------------------ */
 
 struct cell {
@@ -76,7 +95,7 @@ static struct cell cell_of(const struct cb_extremes *all, const char *sweep,
 struct cb_table *cb_extremes_map(const struct cb_extremes *all) {
   struct cb_table *t = cb_table_create(
       "sweep,model,storage,arithmetic,state,rank,first_parameter,first_value,first_broken_law,"
-      "rows,right,inaccurate,breaks_a_law,not_finite,not_judged,note");
+      "rows,right,by_method,inaccurate,breaks_a_law,not_finite,not_judged,note");
   for (size_t s = 0; t && cb_sweeps[s]; s++)
     for (size_t v = 0; all->variants[v]; v++) {
       const struct cb_variant *variant = all->variants[v];

@@ -88,14 +88,10 @@ static enum cb_status walk_forces(const struct cb_variant *v, const struct cb_ca
   return status;
 }
 
-enum cb_definition cb_walk_definition(const struct cb_model *model) {
-  return model->node_frames ? CB_NEAREST_ROTATION : cb_frame_definition(model);
-}
-
 enum cb_status cb_walk_along(const struct cb_variant *v, const struct cb_walk *known,
                              struct cb_walk *w) {
   struct cb_cases c;
-  struct cb_walk made = {.definition = cb_walk_definition(v->model),
+  struct cb_walk made = {.definition = cb_frame_definition(v->model),
                          .framed = v->model->frame != NULL,
                          .R = calloc(POINTS, 30 * sizeof *made.R)};
   enum cb_status status = made.R ? CB_OK : cb_fail_memory("the paths");

@@ -19,7 +19,7 @@ void cb_path_gradient(size_t path, double t, double F[9]);
 
 /* Every path at the times 0, 1 / CB_PATH_STEPS ... 1, one path after the other. */
 struct cb_walk {
-  enum cb_definition definition; /* of the frame, also of node-warp's */
+  enum cb_definition definition; /* of the frame */
   bool framed;                   /* the model offers its frame */
   double *R;                     /* [9] each: frames, each by itself (cold) */
   double *f;                     /* [12] each: force / (E L^2), one step after the other */
@@ -29,8 +29,6 @@ struct cb_walk {
  * none. CB_MEMORY, recorded. Free with cb_walk_free. */
 enum cb_status cb_walk_along(const struct cb_variant *v, const struct cb_walk *known,
                              struct cb_walk *w);
-/* What a walk's frames are by definition. */
-enum cb_definition cb_walk_definition(const struct cb_model *model);
 void cb_walk_free(struct cb_walk *w);
 static inline size_t cb_walk_index(size_t path, size_t step) {
   return path * (CB_PATH_STEPS + 1) + step;

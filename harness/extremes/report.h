@@ -10,8 +10,9 @@
 
 /* From good to bad, the order of the map. */
 enum cb_extreme_state {
-  CB_NOT_JUDGED, /* the note begins with "not judged" or "by method" and says why */
+  CB_NOT_JUDGED, /* there is nothing to hold it against: the note says why */
   CB_RIGHT,
+  CB_BY_METHOD,  /* not finite, a law or an error, but the method's: the note says why */
   CB_INACCURATE, /* keeps its laws, an error is above the limit */
   CB_BREAKS,     /* a law that the model claims */
   CB_NOT_FINITE,
@@ -29,6 +30,8 @@ struct cb_extreme cb_extreme_blank(const char *sweep, const struct cb_variant *v
 /* *all := the worse of both in each figure; law and note of the one in the worse state. */
 void cb_extreme_fold(struct cb_extreme *all, const struct cb_extreme *one);
 
+/* CB_INPUT, recorded: there is no sweep of that name (NULL: all). */
+enum cb_status cb_extremes_check(const char *sweep);
 /* The sweep of that name alone, or all (NULL). CB_INPUT: there is none; CB_MEMORY,
  * CB_INTERRUPTED. On failure *all is empty. */
 enum cb_status cb_extremes_run(const char *sweep, struct cb_extremes *all);
@@ -40,6 +43,8 @@ void cb_extremes_free(struct cb_extremes *all);
 struct cb_table *cb_extremes_rows(const struct cb_extremes *all);
 struct cb_table *cb_extremes_map(const struct cb_extremes *all);
 struct cb_table *cb_extremes_words(const struct cb_extremes *all);
+/* What the sweep of steps says in columns of its own. NULL: out of memory. */
+struct cb_table *cb_extremes_steps(const struct cb_extremes *all);
 
 /* CB_BROKEN, recorded, if a row is not finite or breaks a law. */
 enum cb_status cb_extremes_judge(const struct cb_extremes *all);

@@ -13,6 +13,7 @@
 
 #include "harness/bench/bench.h"
 #include "harness/error.h"
+#include "harness/extremes/exact.h"
 #include "harness/extremes/report.h"
 #include "harness/progress.h"
 
@@ -108,10 +109,11 @@ static enum cb_status step(const struct system *system, const struct cb_bench_sc
                 !(system->sound && ended.why == CB_ENDED_OVERFLOW);
   snprintf(row->note, sizeof row->note, "%s after %zu of %d, dv up to %.2g m/s", ending[ended.why],
            ended.iterations, ITERATIONS, largest(3 * nodes, work));
-  const char *tail = strrchr(row->variant->model->name, '-');
-  if (!row->finite && is_flat(system) && tail && strcmp(tail, "-volume") == 0)
+  if (!row->finite && is_flat(system) && cb_divides_by_volume(row->variant->model)) {
+    row->why = CB_WHY_METHOD;
     snprintf(row->note, sizeof row->note, "by method: B is divided by a volume of 0; solver: %s",
              ending[ended.why]);
+  }
   if (system->make == held && largest(3 * nodes, work) != 0) row->law = "fixed nodes stay";
   if (system->definite && ended.why == CB_ENDED_INDEFINITE &&
       row->variant->model->laws[0] & CB_KEEPS(CB_LAW_SEMIDEFINITE))

@@ -147,6 +147,14 @@ static enum cb_status read_files(const struct file *file, const char *directory,
   return status;
 }
 
+/* The recorded sentence from its line on, or from the name of the file: the directory is
+ * another one in every run. */
+static const char *without_path(const char *directory) {
+  const char *sentence = cb_error_message(), *line = strstr(sentence, "line");
+  const char *path = strstr(sentence, directory);
+  return line ? line : path ? path + strlen(directory) + 1 : sentence;
+}
+
 /* finite: refused if it is to be, with CB_INPUT. */
 static enum cb_status run_file(const struct file *file, const char *directory,
                                struct cb_extremes *all) {
@@ -157,11 +165,8 @@ static enum cb_status run_file(const struct file *file, const char *directory,
   snprintf(row.parameter, sizeof row.parameter, "%s", file->name);
   row.value = (double)(SHAPES + 1 + (file - files));
   row.finite = read == (file->right ? CB_OK : CB_INPUT);
-  const char *sentence = cb_error_message(), *line = strstr(sentence, "line");
-  if (read)
-    snprintf(row.note, sizeof row.note, "refused: %.80s", line ? line : sentence);
-  else if (!file->right)
-    snprintf(row.note, sizeof row.note, "taken");
+  if (read) snprintf(row.note, sizeof row.note, "refused: %.80s", without_path(directory));
+  if (!read && !file->right) snprintf(row.note, sizeof row.note, "taken");
   return cb_extremes_add(all, &row);
 }
 

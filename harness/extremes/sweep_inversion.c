@@ -114,7 +114,7 @@ static enum cb_status add_variant(struct cb_extremes *all, const struct cb_varia
                                   struct walks *first) {
   struct cb_walk w,
       *known =
-          &first->of[cb_walk_definition(v->model)][v->arithmetic->scalar_bytes == sizeof(float)];
+          &first->of[cb_frame_definition(v->model)][v->arithmetic->scalar_bytes == sizeof(float)];
   const char *model = v->model->name;
   const bool warm = strncmp(model, "polar-quaternion", 16) == 0;
   enum cb_status status = cb_walk_along(v, known->R ? known : NULL, &w);

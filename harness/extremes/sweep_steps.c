@@ -58,26 +58,17 @@ static enum cb_status find_limit(const struct cb_variant *v, const struct cb_ben
 static enum cb_status add_columns(const struct cb_variant *v, enum cb_integrator integrator,
                                   const char *what, double h, size_t steps,
                                   const struct cb_swing *s, struct cb_extremes *all) {
-  char name[96];
-  const double figures[] = {s->most, s->energy, s->momentum, s->angular};
-  if (!all->steps)
-    all->steps = cb_table_create("variant,integrator,what,step_s,steps,finite,most_energy,"
-                                 "end_energy,momentum_change,angular_change");
-  if (!all->steps) return cb_fail_memory("the table of steps");
-  cb_variant_name(v, name);
-  cb_table_text(all->steps, name);
-  cb_table_text(all->steps, cb_integrator_name[integrator]);
-  cb_table_text(all->steps, what);
-  cb_table_number(all->steps, h);
-  cb_table_integer(all->steps, (long long)steps);
-  cb_table_text(all->steps, s->finite ? "yes" : "no");
-  for (int i = 0; i < 4; i++) {
-    if (isnan(figures[i]))
-      cb_table_missing(all->steps);
-    else
-      cb_table_number(all->steps, figures[i]);
-  }
-  return CB_OK;
+  const struct cb_extreme_step step = {.variant = v,
+                                       .integrator = cb_integrator_name[integrator],
+                                       .what = what,
+                                       .h = h,
+                                       .steps = steps,
+                                       .finite = s->finite,
+                                       .most = s->most,
+                                       .energy = s->energy,
+                                       .momentum = s->momentum,
+                                       .angular = s->angular};
+  return cb_extremes_add_step(all, &step);
 }
 
 /* A step that is too long is no fault of a variant: nothing is broken by a row. */
@@ -119,16 +110,22 @@ static enum cb_status add_drift(const struct cb_variant *v, const struct cb_benc
 /* Of those that have the same formulas in more lanes one is enough. */
 static bool wanted(const struct cb_variant *v) { return v->arithmetic->lanes == 1; }
 
-static enum cb_status run_variant(const struct cb_variant *v, const struct cb_bench_scene *body,
-                                  const struct cb_bench_scene *one, struct cb_extremes *all) {
+struct bodies {
+  const struct cb_variant *variant;
+  const struct cb_bench_scene *body, *one;
+};
+
+static enum cb_status run_variant(struct cb_extremes *all, const void *context) {
+  const struct bodies *b = context;
+  const struct cb_variant *v = b->variant;
   char name[96];
-  enum cb_status status = add_limit(v, body, CB_IMPLICIT_ITERATED, all);
-  if (!status) status = add_limit(v, body, CB_EXPLICIT, all);
+  enum cb_status status = add_limit(v, b->body, CB_IMPLICIT_ITERATED, all);
+  if (!status) status = add_limit(v, b->body, CB_EXPLICIT, all);
   if (v->arithmetic != cb_arithmetics[0]) return status;
   snprintf(name, sizeof name, "%s/bcsr/f64", v->model->name);
   const struct cb_variant *direct = cb_variant_find(name);
-  if (!status && direct) status = add_limit(direct, body, CB_IMPLICIT_DIRECT, all);
-  if (!status) status = add_drift(v, one, CB_EXPLICIT, all);
+  if (!status && direct) status = add_limit(direct, b->body, CB_IMPLICIT_DIRECT, all);
+  if (!status) status = add_drift(v, b->one, CB_EXPLICIT, all);
   return status;
 }
 
@@ -140,10 +137,11 @@ static enum cb_status run(struct cb_extremes *all) {
   while (all->variants[variants]) variants++;
   cb_progress_begin("steps", (double)variants);
   for (size_t n = 0; !status && n < variants; n++) {
-    char name[96];
-    cb_variant_name(all->variants[n], name);
-    cb_progress((double)n, name);
-    if (wanted(all->variants[n])) status = run_variant(all->variants[n], &body, &one, all);
+    const struct bodies part = {all->variants[n], &body, &one};
+    char key[128] = "steps: ";
+    cb_variant_name(part.variant, key + strlen(key));
+    cb_progress((double)n, key + strlen("steps: "));
+    if (wanted(part.variant)) status = cb_extremes_part(all, key, run_variant, &part);
   }
   cb_progress_end();
   cb_bench_scene_free(&body);

@@ -154,18 +154,26 @@ static enum cb_status add_step(struct cb_extremes *all, const struct cb_variant 
   return cb_extremes_add(all, &row);
 }
 
+static enum cb_status run_scale(struct cb_extremes *all, const void *context) {
+  const struct scaled *s = context;
+  struct cb_cases c;
+  enum cb_status status = shapes(all->seed, s, &c);
+  if (status) return status;
+  if (s->unit != MASS) status = cb_cases_sweep("units", &c, ELEMENTS, name, s, all);
+  for (size_t v = 0; !status && all->variants[v]; v++)
+    status = add_step(all, all->variants[v], &c, s);
+  cb_cases_free(&c);
+  return status;
+}
+
 static enum cb_status run(struct cb_extremes *all) {
   enum cb_status status = CB_OK;
   for (size_t n = 0; !status && n < UNITS * SCALES; n++) {
     const struct scaled s = {(enum unit)(n % UNITS), scale_of(n / UNITS)};
-    struct cb_cases c;
-    status = shapes(all->seed, &s, &c);
-    if (status) break;
-    if (s.unit != MASS) status = cb_cases_sweep("units", &c, ELEMENTS, name, &s, all);
-    for (size_t v = 0; !status && all->variants[v]; v++)
-      status = add_step(all, all->variants[v], &c, &s);
+    char key[64];
+    snprintf(key, sizeof key, "units: %s times %g", unit_name[s.unit], s.scale);
+    status = cb_extremes_part(all, key, run_scale, &s);
     if (!status && cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted; no table");
-    cb_cases_free(&c);
   }
   return status;
 }
