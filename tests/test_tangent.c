@@ -118,6 +118,39 @@ static void nothing_is_clamped_under_tension(void **state) {
   gsl_rng_free(rng);
 }
 
+/* Far stretched, 2 - k tr(V - I) is negative: all eigenvalues of C are above 1, so that the
+ * clamped one is the same, where sums are bounded as well: one is, or two are. A rounding of V
+ * is one over LEAST_TURN of the turning, 9 being the longest stretch. */
+static void bounds_are_the_same_clamped_or_not(void **state) {
+  static const double values[3][3] = {{9, 1, -0.9999}, {9, 9, -9}, {9, 0, 0}};
+  (void)state;
+  gsl_rng *rng = scene_rng();
+  struct scene s = scene_new(rng, SCENE_RANDOM);
+  struct cb_material m = scene_material(false);
+  size_t n = 3 * s.mesh.nodes, forms = 0;
+  quad *q = quads_new(3 * n), *f = q, *y = q + n, *z = q + 2 * n;
+  for (const struct cb_variant *v = cb_variants(NULL); v->model; v++) {
+    if (strcmp(v->model->name, "polar-tangent") != 0 || v->storage != CB_EBE) continue;
+    if (!cb_arithmetic_runs(v->arithmetic)) continue;
+    const struct cb_variant clamped = {scene_model(v->arithmetic, "polar-tangent-clamped"), CB_EBE,
+                                       v->arithmetic};
+    for (int t = 0; t < 3 * SHAPES; t++) {
+      const double *value = values[t % 3];
+      shape_of_values(rng, &s, value[0], value[1], value[2]);
+      operator_at(v, &s, &m, s.u, f, y);
+      operator_at(&clamped, &s, &m, s.u, f, z);
+      /* x is given in double */
+      const double roundoff = fmax(v->arithmetic->roundoff, 0x1p-53);
+      assert_rounding(v->arithmetic->name, n, z, y, roundoff, 9 / 1e-3, LIMIT);
+    }
+    forms++;
+  }
+  assert_true(forms >= 3);
+  free(q);
+  scene_free(&s);
+  gsl_rng_free(rng);
+}
+
 /* Under compression turning gives energy back: u = w x x has u . K u = -u . (w x f) < 0,
  * and of the clamped operator nothing has. */
 static void compression_is_what_is_clamped(void **state) {
@@ -183,6 +216,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(turning_the_shape_turns_the_force),
       cmocka_unit_test(nothing_is_clamped_under_tension),
+      cmocka_unit_test(bounds_are_the_same_clamped_or_not),
       cmocka_unit_test(compression_is_what_is_clamped),
       cmocka_unit_test(it_is_bounded_where_the_frame_may_jump),
   };

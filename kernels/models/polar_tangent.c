@@ -25,8 +25,10 @@
 
 /* tr(V) I - V has the sums of two stretches as eigenvalues, none negative. Where one
  * is below this (a much inverted element, whose frame may jump; or a collapsed one)
- * the turning is bounded: the sum is taken to be as large. */
+ * the turning is bounded: the sum is taken to be as large, or as what rounding may have
+ * left of it. */
 #define LEAST_TURN LIT(1e-3)
+#define LOST BY_PRECISION(0x1p-20, 0x1p-49)
 
 static const uint8_t voigt_row[6] = {0, 1, 2, 0, 1, 2}, voigt_column[6] = {0, 1, 2, 1, 2, 0};
 
@@ -36,9 +38,11 @@ static const uint8_t voigt_row[6] = {0, 1, 2, 0, 1, 2}, voigt_column[6] = {0, 1,
 INLINE void turning_by_axes(bool clamped, T k, const T *V, T *C) {
   T trace = V[0] + V[4] + V[8], factor = LIT(2) - k * (trace - LIT(3)), A[9], lambda[3];
   jacobi_eigen(V, A, lambda);
+  T lost = LOST * (ABS(lambda[0]) + ABS(lambda[1]) + ABS(lambda[2]));
+  const T least = SELECT(lost > LEAST_TURN, lost, LEAST_TURN);
   for (int i = 0; i < 3; i++) {
     T sum = trace - lambda[i]; /* of the two other stretches */
-    lambda[i] = LIT(1) - factor / SELECT(sum > LEAST_TURN, sum, LEAST_TURN);
+    lambda[i] = LIT(1) - factor / SELECT(sum > least, sum, least);
     if (clamped) lambda[i] = SELECT(lambda[i] < LIT(0), LIT(0), lambda[i]);
   }
   for (int n = 0; n < 6; n++) {
@@ -54,9 +58,9 @@ INLINE void turning(T k, const T *V, T *C) {
   T trace = V[0] + V[4] + V[8], A[9], cofactor[9];
   for (int i = 0; i < 9; i++) A[i] = i % 4 == 0 ? trace - V[i] : -V[i];
   cofactor3(A, cofactor);
-  T det = dot3(A, cofactor);
-  T least = LEAST_TURN * (ABS(cofactor[0]) + ABS(cofactor[4]) + ABS(cofactor[8])) + LIT(1e-30);
-  CHOICE usual = LESS(least, det);
+  T det = dot3(A, cofactor), size = ABS(A[0]) + ABS(A[4]) + ABS(A[8]);
+  T most = ABS(cofactor[0]) + ABS(cofactor[4]) + ABS(cofactor[8]), lost = LOST * size;
+  CHOICE usual = LESS(LEAST_TURN * most, det) & LESS(lost * most, det) & LESS(lost * size, most);
   T scale = (LIT(2) - k * (trace - LIT(3))) / CHOOSE(usual, det, LIT(1));
   for (int n = 0; n < 6; n++) {
     C[n] = -(scale * cofactor[3 * voigt_row[n] + voigt_column[n]]);
@@ -66,7 +70,7 @@ INLINE void turning(T k, const T *V, T *C) {
   const T from[9] = {V[0], V[1], V[2], V[3], V[4], V[5], V[6], V[7], V[8]};
   T bounded[6];
   turning_of_any(k, from, bounded);
-  for (int n = 0; n < 6; n++) C[n] = CHOOSE(usual, bounded[n], C[n]);
+  for (int n = 0; n < 6; n++) C[n] = CHOOSE(usual, C[n], bounded[n]);
 }
 
 /* M := [k tr(Z) I + Z + Z^T] + [C a]x. */
