@@ -64,6 +64,84 @@ static void assert_closed(const struct cb_mesh *m) {
   free(face);
 }
 
+static size_t label(const size_t *part, size_t e) {
+  while (part[e] != e) e = part[e];
+  return e;
+}
+
+/* From any tetrahedron every other one is reached across faces. */
+static size_t parts_by_faces(const struct cb_mesh *m) {
+  struct face {
+    uint32_t node[3], tet;
+  } *face = malloc(4 * m->tets * sizeof *face);
+  size_t *part = malloc(m->tets * sizeof *part), parts = m->tets;
+  for (size_t n = 0; n < 4 * m->tets; n++) {
+    uint32_t t[4]; /* in rising order, of which one is left out */
+    memcpy(t, m->tet + n / 4 * 4, sizeof t);
+    for (int i = 0; i < 4; i++)
+      for (int j = i + 1; j < 4; j++)
+        if (t[i] > t[j]) {
+          const uint32_t swap = t[i];
+          t[i] = t[j], t[j] = swap;
+        }
+    for (size_t i = 0, k = 0; i < 4; i++)
+      if (i != n % 4) face[n].node[k++] = t[i];
+    face[n].tet = (uint32_t)(n / 4);
+    part[n / 4] = n / 4;
+  }
+  qsort(face, 4 * m->tets, sizeof *face, by_face);
+  for (size_t n = 1; n < 4 * m->tets; n++) {
+    const size_t a = label(part, face[n].tet), b = label(part, face[n - 1].tet);
+    if (a == b || by_face(&face[n], &face[n - 1]) != 0) continue;
+    part[a > b ? a : b] = a > b ? b : a;
+    parts--;
+  }
+  free(part);
+  free(face);
+  return parts;
+}
+
+static void assert_no_node_is_alone(const struct cb_mesh *m) {
+  uint8_t *used = calloc(m->nodes, 1);
+  for (size_t n = 0; n < 4 * m->tets; n++) used[m->tet[n]] = 1;
+  for (size_t i = 0; i < m->nodes; i++)
+    if (!used[i]) fail_msg("node %zu of %zu is in no tetrahedron", i, m->nodes);
+  free(used);
+}
+
+/* At every resolution: nothing hangs by an edge or a node. */
+static void shapes_are_in_one_piece(void **state) {
+  (void)state;
+  for (size_t n = 0; n < 2; n++)
+    for (size_t cells = 4; cells <= 32; cells++) {
+      struct cb_mesh m;
+      assert_int_equal(cb_mesh_shape(NAMES[n], cells, 1, &m), CB_OK);
+      const size_t parts = parts_by_faces(&m);
+      if (parts != 1) fail_msg("%s of %zu cells is in %zu parts", NAMES[n], cells, parts);
+      assert_no_node_is_alone(&m);
+      for (size_t e = 0; e < m.tets; e++) assert_true(quality(&m, e) > 0.2);
+      assert_closed(&m);
+      cb_mesh_free(&m);
+    }
+}
+
+/* From the scene's own resolution on no ear of the rabbit is lost, on either side. */
+static void the_rabbit_keeps_its_ears(void **state) {
+  (void)state;
+  for (size_t cells = 14; cells <= 32; cells++) {
+    struct cb_mesh m;
+    double top[2] = {0};
+    assert_int_equal(cb_mesh_shape("rabbit", cells, 1, &m), CB_OK);
+    for (size_t i = 0; i < m.nodes; i++) {
+      double *side = &top[m.X[3 * i + 1] > 0];
+      *side = fmax(*side, m.X[3 * i + 2]);
+    }
+    for (int side = 0; side < 2; side++) /* the head ends at 0.69, the ears at 1.06 */
+      if (!(top[side] > 0.95)) fail_msg("%zu cells: it ends at %g", cells, top[side]);
+    cb_mesh_free(&m);
+  }
+}
+
 static void shapes_are_good_meshes(void **state) {
   (void)state;
   for (size_t n = 0; n < 2; n++) {
@@ -138,10 +216,9 @@ static void crushed_bodies_come_back(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shapes_are_good_meshes),
-      cmocka_unit_test(the_same_shape_is_the_same),
-      cmocka_unit_test(what_is_no_shape_is_refused),
-      cmocka_unit_test(crushed_bodies_come_back),
+      cmocka_unit_test(shapes_are_in_one_piece),     cmocka_unit_test(the_rabbit_keeps_its_ears),
+      cmocka_unit_test(shapes_are_good_meshes),      cmocka_unit_test(the_same_shape_is_the_same),
+      cmocka_unit_test(what_is_no_shape_is_refused), cmocka_unit_test(crushed_bodies_come_back),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,74 +3,23 @@
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <gsl/gsl_errno.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 
 #include <cmocka.h>
 
-#include "harness/error.h"
+#include "harness/advise/advise.h"
 #include "harness/files/mesh.h"
 #include "harness/files/output.h"
 #include "harness/files/vtk.h"
 #include "harness/scene/run.h"
-#include "tests/process.h"
-#include "tests/shortage.h"
+#include "harness/truth/truth.h"
+#include "tests/starve.h"
 #include "tests/tally.h"
 
 #define CORPUS "tests/fuzz/corpus/"
-
-/* Every allocation of a short work; of a long one the first, and then some at equal distances. */
-enum { FIRST = 300, LATER = 60 };
-
-struct work {
-  const char *name;
-  enum cb_status (*run)(void *context);
-  void *context;
-  bool silent;         /* the kernels return a status and record no sentence */
-  size_t first, later; /* 0: FIRST, LATER */
-};
-
-static size_t injected, harmless;
-
-static void assert_clean(const struct work *w, size_t n, enum cb_status status) {
-  const bool harmed = status != CB_OK;
-  injected++;
-  harmless += !harmed;
-  if (shortage_live_count)
-    fail_msg("%s, allocation %zu: status %d, %zu blocks are left", w->name, n, status,
-             shortage_live_count);
-  if (harmed && status != CB_MEMORY && status != CB_IO && status != CB_NUMERIC)
-    fail_msg("%s, allocation %zu: status %d: %s", w->name, n, status, cb_error_message());
-  if (harmed && !w->silent && !cb_error_message()[0])
-    fail_msg("%s, allocation %zu: status %d without a sentence", w->name, n, status);
-}
-
-static enum cb_status run_short(const struct work *w, size_t n, bool lasts) {
-  cb_fail(CB_INPUT, "%s", "");
-  shortage_arm(n, lasts);
-  const enum cb_status status = w->run(w->context);
-  shortage_disarm();
-  return status;
-}
-
-static void starve(const struct work *w) {
-  run_short(w, 0, false); /* what libraries make once is made */
-  assert_int_equal(run_short(w, 0, false), CB_OK);
-  const size_t all = shortage.asked;
-  if (all == 0 && !shortage_reaches_libc) return; /* what it asks for, others ask for it */
-  if (all == 0 || shortage_live_count)
-    fail_msg("%s: %zu allocations, %zu blocks are left", w->name, all, shortage_live_count);
-  const size_t first = w->first ? w->first : FIRST, later = w->later ? w->later : LATER;
-  const size_t stride = all > first + later ? (all - first) / later : 1;
-  for (size_t n = 1; n <= all; n += n <= first ? 1 : stride)
-    for (int lasts = 0; lasts < 2; lasts++) {
-      const enum cb_status status = run_short(w, n, lasts);
-      if (!shortage.failed) fail_msg("%s: allocation %zu of %zu is not asked for", w->name, n, all);
-      assert_clean(w, n, status);
-    }
-  assert_int_equal(run_short(w, 0, false), CB_OK);
-}
 
 /* ---- readers --------------------------------------------------------------------------- */
 
@@ -247,53 +196,199 @@ static void outputs(void **state) {
 /* ---- verbs -------------------------------------------------------------------------------------
  */
 
-struct command {
-  const struct cb_verb *verb;
-  const char *words[12];
-};
-
-static int nowhere, own[2]; /* /dev/null; what the test itself writes to */
-
-static void send(int out, int err) {
-  fflush(stdout);
-  dup2(out, 1);
-  dup2(err, 2);
-}
-
-/* As main does, in this process, unheard. */
-static enum cb_status run_verb(void *context) {
-  const struct command *c = context;
-  char *argv[16] = {(char *)"corobench"};
-  int argc = 1;
-  for (; c->words[argc - 1]; argc++) argv[argc] = (char *)c->words[argc - 1];
-  argv[argc++] = (char *)"--output";
-  argv[argc++] = temporary;
-  send(nowhere, nowhere);
-  const enum cb_status status = c->verb->run(argc, argv);
-  send(own[0], own[1]);
-  return status;
-}
-
 /* Those that simulate or measure for long have their allocations in the works above. */
 static void verbs(void **state) {
   (void)state;
   static const struct command commands[] = {
       {&cb_verb_bench,
-       {"--quick", "--seconds", "1", "--figure", "memory", "--variant", "qr-updated/ebe*/f64"}},
+       {"--quick", "--seconds", "1", "--figure", "memory", "--variant", "qr-updated/ebe*/f64",
+        "--output", temporary}},
       {&cb_verb_verify,
-       {"--laws", "--mesh", CORPUS "mesh_gmsh/version2.msh", "--variant", "qr-exact"}},
+       {"--laws", "--mesh", CORPUS "mesh_gmsh/version2.msh", "--variant", "qr-exact", "--output",
+        temporary}},
       {&cb_verb_trade,
-       {CORPUS "scene/loads.json", "--quick", "--variant", "qr-updated/ebe-cluster/f64"}},
-      {&cb_verb_run, {CORPUS "scene/loads.json"}}};
-  own[0] = dup(1), own[1] = dup(2), nowhere = open("/dev/null", O_WRONLY);
-  assert_true(own[0] >= 0 && own[1] >= 0 && nowhere >= 0);
+       {CORPUS "scene/loads.json", "--quick", "--variant", "qr-updated/ebe-cluster/f64", "--output",
+        temporary}},
+      {&cb_verb_run, {CORPUS "scene/loads.json", "--output", temporary}}};
+  starve_begin();
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     starve(&(struct work){.name = commands[i].verb->name,
                           .run = run_verb,
                           .context = (void *)&commands[i],
                           .first = 40,
                           .later = 20});
-  close(own[0]), close(own[1]), close(nowhere);
+  starve_end();
+}
+
+/* ---- frames ------------------------------------------------------------------------------- */
+
+static char right_library[4200];
+
+/* Ours, the set as files, and somebody's routine in a child process. */
+static void frames(void **state) {
+  (void)state;
+  const struct command commands[] = {{&cb_verb_frames, {"--variant", "svd-precomputed/ebe/f64"}},
+                                     {&cb_verb_frames, {"--write", temporary}},
+                                     {&cb_verb_frames, {"--check", right_library}}};
+  starve_begin();
+  for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+    starve(&(struct work){.name = commands[i].words[0],
+                          .run = run_verb,
+                          .context = (void *)&commands[i],
+                          .unsteady = commands[i].words[1] == right_library,
+                          .first = 25,
+                          .later = 6});
+  starve_end();
+}
+
+/* What a work wrote that ended well is whole: what it wrote without shortage, *whole, which is
+ * read the first time, and to be freed. */
+static void assert_same_text(const char *name, char **whole) {
+  shortage_disarm();
+  char *text = read_text(temporary_path(name));
+  if (*whole) {
+    if (strcmp(text, *whole) != 0) fail_msg("%s is not whole: %s", name, text);
+    free(text);
+  } else {
+    *whole = text;
+  }
+}
+
+/* ---- truth --------------------------------------------------------------------------------- */
+
+struct truth_case {
+  const char *name;
+  cb_truth_fn *run;
+  size_t later; /* few where it takes long */
+  size_t rows;  /* found without shortage */
+  struct cb_truth_row row[8];
+};
+
+/* Without room for its ordering of choice CHOLMOD takes another one, which rounds otherwise. */
+static void assert_same_row(const struct cb_truth_row *a, const struct cb_truth_row *b) {
+  const double x[] = {a->exact, a->coarse, a->medium, a->fine, a->order, a->judged};
+  const double y[] = {b->exact, b->coarse, b->medium, b->fine, b->order, b->judged};
+  for (size_t i = 0; i < sizeof x / sizeof *x; i++)
+    if (!(isnan(x[i]) && isnan(y[i])) && !(fabs(x[i] - y[i]) <= 1e-6 * fabs(y[i])))
+      fail_msg("%s, %s: %.17g instead of %.17g", a->name, a->model, x[i], y[i]);
+}
+
+static enum cb_status run_truth(void *context) {
+  const struct cb_options linear = {.globs = {"linear/ebe/f64"}, .glob_count = 1, .seed = 2005};
+  struct truth_case *c = context;
+  struct cb_truth found = {.options = &linear};
+  send(nowhere, nowhere); /* METIS complains */
+  const enum cb_status status = c->run(&found);
+  send(own[0], own[1]);
+  if (!status && !c->rows) {
+    c->rows = found.count;
+    memcpy(c->row, found.rows, found.count * sizeof *found.rows);
+  }
+  if (!status) {
+    assert_int_equal(found.count, c->rows);
+    for (size_t i = 0; i < c->rows; i++) assert_same_row(&found.rows[i], &c->row[i]);
+  }
+  cb_truth_free(&found);
+  return status;
+}
+
+/* Of random numbers, which must have been drawn. */
+static enum cb_status sweep_tangents(void *text) {
+  const struct cb_options linear = {.globs = {"linear/ebe/f64"}, .glob_count = 1, .seed = 2005};
+  struct cb_table *t = NULL;
+  enum cb_status status = cb_tangent_sweep(&linear, &t);
+  if (!status) status = cb_output_table(temporary, "tangent.csv", t, CB_CSV);
+  cb_table_free(t);
+  if (!status) assert_same_text("tangent.csv", text);
+  return status;
+}
+
+/* The verb with a model that has the short cases only; the long ones with the fastest model. */
+static void truth(void **state) {
+  (void)state;
+  static const struct command all = {&cb_verb_truth,
+                                     {"--variant", "polar-tangent/ebe/f64", "--output", temporary}};
+  static struct truth_case cases[] = {
+      {.name = "manufactured solution", .run = cb_truth_manufactured, .later = 2},
+      {.name = "torsion", .run = cb_truth_torsion, .later = 8},
+      {.name = "spinning body", .run = cb_truth_spin, .later = 4},
+      {.name = "cantilever", .run = cb_truth_cantilever, .later = 3}};
+  starve_begin();
+  starve(&(struct work){
+      .name = "truth", .run = run_verb, .context = (void *)&all, .first = 130, .later = 8});
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    starve(&(struct work){.name = cases[i].name,
+                          .run = run_truth,
+                          .context = &cases[i],
+                          .first = 6,
+                          .later = cases[i].later});
+  char *tangents = NULL;
+  starve(&(struct work){.name = "tangents", .run = sweep_tangents, .context = &tangents});
+  free(tangents);
+  starve_end();
+}
+
+/* ---- advice --------------------------------------------------------------------------------- */
+
+/* What is printed is whole, or the status says that it is not. */
+struct printing {
+  const struct cb_body *body;
+  const struct cb_advice *advice;
+  enum cb_format format;
+  char *whole; /* printed without shortage */
+};
+
+static enum cb_status print_advice(void *context) {
+  struct printing *p = context;
+  const char *path = temporary_path("advice");
+  const int file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
+  send(file, own[1]);
+  const enum cb_status status = cb_advice_print(p->body, p->advice, p->format);
+  send(own[0], own[1]);
+  close(file);
+  if (!status) assert_same_text("advice", &p->whole);
+  return status;
+}
+
+/* The needs of the scene: one that laws, and one that nothing meets. */
+static void advice(void **state) {
+  (void)state;
+  static const struct command all = {
+      &cb_verb_advise,
+      {CORPUS "scene/loads.json", "--quick", "--threads", "1", "--variant", "linear"}};
+  const struct cb_options options = {.globs = {"qr-precomputed", "linear"},
+                                     .glob_count = 2,
+                                     .seed = 2005,
+                                     .threads = {.count = 1, .of = {1}}};
+  struct cb_scene scene;
+  struct cb_body body;
+  starve_begin();
+  starve(&(struct work){.name = "advise",
+                        .run = run_verb,
+                        .context = (void *)&all,
+                        .unsteady = true,
+                        .first = 40,
+                        .later = 8});
+  assert_int_equal(cb_scene_read(CORPUS "scene/needs.json", &scene), CB_OK);
+  assert_int_equal(cb_body_create(&scene, 1, &body), CB_OK);
+  for (int n = 0; n < 2; n++) { /* as the scene has it, and with what linear elements do meet */
+    const struct cb_advise_request request = {
+        .options = &options, .tolerance = NAN, .budget_s = NAN, .quick = true};
+    struct cb_advice made;
+    send(nowhere, nowhere);
+    if (n == 1) scene.needs.energy = INFINITY, scene.needs.laws = 0;
+    const enum cb_status status = cb_advise(&body, &request, &made);
+    send(own[0], own[1]);
+    assert_int_equal(status, CB_OK);
+    for (enum cb_format format = CB_TABLE; format <= CB_JSON; format++) {
+      struct printing p = {&body, &made, format, NULL};
+      starve(&(struct work){.name = "a piece of advice", .run = print_advice, .context = &p});
+      free(p.whole);
+    }
+    cb_advice_free(&made);
+  }
+  cb_body_free(&body);
+  starve_end();
 }
 
 static int end(void **state) {
@@ -306,8 +401,12 @@ int main(int argc, char **argv) {
   if (argc > 1) cmocka_set_test_filter(argv[1]);
   shortage_begin();
   gsl_set_error_handler_off();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(readers),   cmocka_unit_test(scenes),
-                                     cmocka_unit_test(operators), cmocka_unit_test(simulations),
-                                     cmocka_unit_test(outputs),   cmocka_unit_test(verbs)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(readers),     cmocka_unit_test(scenes),  cmocka_unit_test(operators),
+      cmocka_unit_test(simulations), cmocka_unit_test(outputs), cmocka_unit_test(verbs),
+      cmocka_unit_test(frames),      cmocka_unit_test(truth),   cmocka_unit_test(advice)};
+  const char *slash = strrchr(argv[0], '/');
+  snprintf(right_library, sizeof right_library, "%.*sframes/right.so",
+           slash ? (int)(slash + 1 - argv[0]) : 0, argv[0]);
   return cmocka_run_group_tests(tests, temporary_make, end);
 }

@@ -237,7 +237,7 @@ enum cb_status cb_advise(const struct cb_body *body, const struct cb_advise_requ
   e->done += 15;
   if (!status) status = cb_patches_random(50, 2, 0.3, request->options->seed, &e->patches);
   if (!status) status = try_models(e, &a);
-  qsort(a.tried, a.tried_count, sizeof *a.tried, by_step);
+  if (!status) qsort(a.tried, a.tried_count, sizeof *a.tried, by_step);
   if (!status) status = widen(e, &a);
   if (!status && a.ranked_count) status = cb_explorer_rank(e, &a);
   if (!status && a.ranked_count) status = cb_explorer_settings(e, &a);

@@ -1,6 +1,7 @@
 /* report.c - a piece of advice as text, CSV or JSON.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
+#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -99,7 +100,7 @@ static struct cb_table *settings(const struct cb_advice *a) {
 
 static enum cb_status print_table(const char *title, struct cb_table *t) {
   enum cb_status status = t ? CB_OK : cb_fail_memory("a table");
-  if (!status && cb_table_rows(t)) {
+  if (!status && !cb_table_is_empty(t)) {
     printf("\n%s\n", title);
     status = cb_table_print(t, CB_TABLE, stdout);
   }
@@ -174,17 +175,31 @@ static enum cb_status print_text(const struct cb_body *body, const struct cb_adv
 
 static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
-static json_t *candidate_json(const struct cb_advice *a, const struct cb_candidate *c) {
+/* The list with the item behind the others; NULL, and both freed, where one is NULL. */
+static json_t *with(json_t *list, json_t *item) {
+  if (json_array_append_new(list, item) == 0) return list;
+  json_decref(list);
+  return NULL;
+}
+
+static json_t *laws_json(const struct cb_advice *a, const struct cb_candidate *c) {
   json_t *laws = json_object();
+  bool whole = true;
   for (int law = 0; law <= CB_LAW_ORDER; law++)
     if (a->needs.laws & CB_KEEPS(law))
-      json_object_set_new(laws, cb_law_name[law], number(c->law[law]));
+      whole &= json_object_set_new(laws, cb_law_name[law], number(c->law[law])) == 0;
+  if (whole) return laws;
+  json_decref(laws);
+  return NULL;
+}
+
+static json_t *candidate_json(const struct cb_advice *a, const struct cb_candidate *c) {
   return json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o}", "variant", c->name,
                    "threads", (json_int_t)c->trial.threads, "iterations",
                    (json_int_t)c->trial.iterations, "step_s", number(c->step_s), "step_s_low",
                    number(c->step.low), "step_s_high", number(c->step.high), "error",
                    number(c->error), "torque", number(c->torque), "energy_error", number(c->energy),
-                   "tie", c->tie, "laws", laws);
+                   "tie", c->tie, "laws", laws_json(a, c));
 }
 
 static json_t *rejected_json(const struct cb_advice *a) {
@@ -193,11 +208,10 @@ static json_t *rejected_json(const struct cb_advice *a) {
     const struct cb_candidate *c = &a->tried[i];
     if (!c->unmet || !c->last) continue;
     const enum cb_need need = first_unmet(c);
-    json_array_append_new(list,
-                          json_pack("{s:s, s:I, s:s, s:o, s:o}", "variant", c->name, "iterations",
-                                    (json_int_t)c->trial.iterations, "need", cb_need_name[need],
-                                    "value", number(cb_need_value(a, c, need)), "limit",
-                                    number(cb_need_limit(a, need))));
+    list = with(list, json_pack("{s:s, s:I, s:s, s:o, s:o}", "variant", c->name, "iterations",
+                                (json_int_t)c->trial.iterations, "need", cb_need_name[need],
+                                "value", number(cb_need_value(a, c, need)), "limit",
+                                number(cb_need_limit(a, need))));
   }
   return list;
 }
@@ -207,9 +221,9 @@ static json_t *relaxed_json(const struct cb_advice *a) {
   for (size_t i = 0; i < a->relaxed_count; i++) {
     const struct cb_relaxation *r = &a->relaxed[i];
     const struct cb_candidate *c = r->candidate == SIZE_MAX ? NULL : &a->tried[r->candidate];
-    json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "need", cb_need_name[r->need], "then",
-                                          c ? candidate_json(a, c) : json_null(), "time_ratio",
-                                          number(r->gain)));
+    list = with(list,
+                json_pack("{s:s, s:o, s:o}", "need", cb_need_name[r->need], "then",
+                          c ? candidate_json(a, c) : json_null(), "time_ratio", number(r->gain)));
   }
   return list;
 }
@@ -218,20 +232,20 @@ static json_t *settings_json(const struct cb_advice *a) {
   json_t *list = json_array();
   for (size_t i = 0; i < a->setting_count; i++) {
     const struct cb_setting *s = &a->setting[i];
-    json_array_append_new(
-        list, json_pack("{s:o, s:f, s:I, s:I, s:o, s:o, s:b}", "step_s", number(s->step),
-                        "resolution", s->resolution, "tetrahedra", (json_int_t)s->tetrahedra,
-                        "iterations", (json_int_t)s->candidate.trial.iterations,
-                        "seconds_per_second", number(s->seconds), "error",
-                        number(s->candidate.error), "meets", !s->candidate.unmet));
+    list =
+        with(list, json_pack("{s:o, s:f, s:I, s:I, s:o, s:o, s:b}", "step_s", number(s->step),
+                             "resolution", s->resolution, "tetrahedra", (json_int_t)s->tetrahedra,
+                             "iterations", (json_int_t)s->candidate.trial.iterations,
+                             "seconds_per_second", number(s->seconds), "error",
+                             number(s->candidate.error), "meets", !s->candidate.unmet));
   }
   return list;
 }
 
 static enum cb_status print_json(const struct cb_body *body, const struct cb_advice *a) {
+  errno = 0;
   json_t *list = json_array();
-  for (size_t i = 0; i < a->ranked_count; i++)
-    json_array_append_new(list, candidate_json(a, &a->ranked[i]));
+  for (size_t i = 0; i < a->ranked_count; i++) list = with(list, candidate_json(a, &a->ranked[i]));
   json_t *all = json_pack(
       "{s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene", body->scene->name, "tetrahedra",
       (json_int_t)body->at.mesh.tets, "recommended",
@@ -241,8 +255,10 @@ static enum cb_status print_json(const struct cb_body *body, const struct cb_adv
                                                 : json_string(cb_need_name[a->binding]));
   const bool written =
       all && json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
+  const bool starved = !written && errno == ENOMEM;
   putchar('\n');
   json_decref(all);
+  if (starved) return cb_fail_memory("the advice");
   return written ? CB_OK : cb_fail(CB_IO, "cannot write the advice to standard output");
 }
 

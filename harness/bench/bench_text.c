@@ -8,7 +8,7 @@
 #include "harness/bench/bench.h"
 
 void cb_bench_print(FILE *stream, const char *title, struct cb_table *t) {
-  if (t && cb_table_rows(t) > 0) {
+  if (t && !cb_table_is_empty(t)) {
     fprintf(stream, "\n%s\n", title);
     cb_table_print(t, CB_TABLE, stream);
   }

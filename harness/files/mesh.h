@@ -31,7 +31,7 @@ enum cb_status cb_mesh_irregular(size_t nx, size_t ny, size_t nz, double edge, u
 /* "rabbit" or "liver": about `length` m long along x, z up, `cells` of the lattice to that
  * length (at least 4); conforming, every tetrahedron positively oriented with a quality of at
  * least 0.2 (6 sqrt 2 volumes by the cube of the root mean square edge: 1 if regular), in one
- * piece. CB_INPUT, CB_MEMORY. */
+ * piece, joined by faces. CB_INPUT, CB_MEMORY. */
 enum cb_status cb_mesh_shape(const char *name, size_t cells, double length, struct cb_mesh *mesh);
 bool cb_mesh_is_shape(const char *name);
 

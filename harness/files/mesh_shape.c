@@ -10,97 +10,15 @@
 #include <string.h>
 
 #include "harness/error.h"
+#include "harness/files/faces.h"
 #include "harness/files/mesh.h"
-
-/* ---- shapes: smooth unions of ellipsoids, length 1 along x, z up ------------------------ */
-
-struct ellipsoid {
-  double centre[3], radius[3];
-  double lean; /* rad: its z axis leans to -x */
-  int sides;   /* 2: mirrored in y as well */
-  int sign;    /* -1: cut out */
-};
-struct shape {
-  const char *name;
-  double blend; /* radius of the fillets */
-  double low[3], high[3];
-  size_t count;
-  struct ellipsoid part[10];
-};
-
-static const struct shape shapes[] = {{"rabbit",
-                                       0.05,
-                                       {-0.08, -0.32, -0.06},
-                                       {1.08, 0.32, 1.12},
-                                       9,
-                                       {{{0.42, 0, 0.30}, {0.34, 0.22, 0.27}, 0, 1, 1},
-                                        {{0.25, 0.10, 0.22}, {0.18, 0.13, 0.20}, 0, 2, 1},
-                                        {{0.66, 0, 0.32}, {0.15, 0.15, 0.22}, -0.4, 1, 1},
-                                        {{0.82, 0, 0.53}, {0.18, 0.145, 0.155}, 0, 1, 1},
-                                        {{0.72, 0.085, 0.83}, {0.085, 0.06, 0.24}, 0.35, 2, 1},
-                                        {{0.05, 0, 0.33}, {0.085, 0.08, 0.085}, 0, 1, 1},
-                                        {{0.72, 0.09, 0.08}, {0.13, 0.07, 0.085}, 0, 2, 1},
-                                        {{0.34, 0.16, 0.07}, {0.21, 0.085, 0.075}, 0, 2, 1},
-                                        {{0.96, 0, 0.50}, {0.06, 0.07, 0.06}, 0, 1, 1}}},
-                                      {"liver",
-                                       0.08,
-                                       {-0.06, -0.34, -0.06},
-                                       {1.06, 0.34, 0.66},
-                                       4,
-                                       {{{0.32, 0, 0.30}, {0.33, 0.26, 0.27}, 0.2, 1, 1},
-                                        {{0.70, 0.02, 0.38}, {0.31, 0.17, 0.14}, -0.2, 1, 1},
-                                        {{0.50, -0.03, 0.38}, {0.26, 0.21, 0.17}, 0, 1, 1},
-                                        {{0.46, 0, 0.02}, {0.16, 0.4, 0.13}, 0, 1, -1}}}};
-
-/* About the distance to the ellipsoid, negative inside. */
-static double distance(const struct ellipsoid *e, const double *p, double side) {
-  double d[3] = {p[0] - e->centre[0], p[1] - side * e->centre[1], p[2] - e->centre[2]}, k = 0,
-         g = 0;
-  const double c = cos(e->lean), s = sin(e->lean);
-  const double x = c * d[0] + s * d[2], z = c * d[2] - s * d[0];
-  d[0] = x, d[2] = z;
-  for (int i = 0; i < 3; i++) {
-    const double q = d[i] / e->radius[i];
-    k += q * q, g += q * q / (e->radius[i] * e->radius[i]);
-  }
-  k = sqrt(k), g = sqrt(g);
-  const double least = fmin(e->radius[0], fmin(e->radius[1], e->radius[2]));
-  return g > 0 ? k * (k - 1) / g : -least; /* Quilez: first order at the surface */
-}
-
-/* The smaller one, rounded off within `blend`. */
-static double smooth_minimum(double a, double b, double blend) {
-  const double h = fmax(0, blend - fabs(a - b)) / blend;
-  return fmin(a, b) - h * h * blend / 4;
-}
-
-static double value(const struct shape *s, const double *p) {
-  double f = INFINITY;
-  for (size_t i = 0; i < s->count; i++)
-    for (int side = 0; side < s->part[i].sides; side++) {
-      const double d = distance(&s->part[i], p, side ? -1 : 1);
-      f = !isfinite(f)          ? d
-          : s->part[i].sign < 0 ? -smooth_minimum(-f, d, s->blend)
-                                : smooth_minimum(f, d, s->blend);
-    }
-  return f;
-}
-
-static void gradient(const struct shape *s, const double *p, double *g) {
-  const double e = 1e-5;
-  for (int k = 0; k < 3; k++) {
-    double q[3] = {p[0], p[1], p[2]};
-    q[k] += e;
-    g[k] = value(s, q);
-    q[k] -= 2 * e;
-    g[k] = (g[k] - value(s, q)) / (2 * e);
-  }
-}
+#include "harness/files/shape.h"
 
 /* ---- lattice ------------------------------------------------------------------------------ */
 
 struct lattice {
-  const struct shape *shape;
+  const struct cb_shape *shape;
+  double low[3];
   size_t n[3]; /* cells */
   double cell;
   double *X, *f; /* of every node */
@@ -114,18 +32,6 @@ static uint32_t node_at(const struct lattice *l, size_t x, size_t y, size_t z) {
   return (uint32_t)((z * (l->n[1] + 1) + y) * (l->n[0] + 1) + x);
 }
 
-/* One step of Newton's method to the surface, of at most `reach`; returns whether it was
- * within reach. */
-static bool towards_surface(const struct shape *s, double reach, double *p) {
-  double g[3];
-  const double f = value(s, p);
-  gradient(s, p, g);
-  const double square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
-  if (!(square > 0) || !(fabs(f) <= reach * sqrt(square))) return false;
-  for (int k = 0; k < 3; k++) p[k] -= f * g[k] / square;
-  return true;
-}
-
 static void fill_lattice(struct lattice *l) {
   const double reach = 0.3 * l->cell; /* Kuhn's tetrahedra stay upright for it */
   for (size_t z = 0; z <= l->n[2]; z++)
@@ -134,8 +40,8 @@ static void fill_lattice(struct lattice *l) {
         const uint32_t i = node_at(l, x, y, z);
         const size_t place[3] = {x, y, z};
         double *p = l->X + 3 * i;
-        for (int k = 0; k < 3; k++) p[k] = l->shape->low[k] + l->cell * (double)place[k];
-        l->f[i] = towards_surface(l->shape, reach, p) ? 0 : value(l->shape, p);
+        for (int k = 0; k < 3; k++) p[k] = l->low[k] + l->cell * (double)place[k];
+        l->f[i] = cb_shape_approach(l->shape, reach, p) ? 0 : cb_shape_value(l->shape, p);
       }
 }
 
@@ -166,7 +72,7 @@ static size_t inside(const struct lattice *l, uint32_t *tet) {
         for (int k = 0; k < 3; k++) middle[k] += l->X[3 * t[j] + k] / 4;
       }
       if (!in || !(cb_mesh_quality(l->X, t) > LEAST)) continue;
-      if (flat && value(l->shape, middle) > -0.05 * l->cell) continue;
+      if (flat && cb_shape_value(l->shape, middle) > -0.05 * l->cell) continue;
       if (tet) memcpy(tet + 4 * count, t, sizeof t);
       count++;
     }
@@ -175,28 +81,36 @@ static size_t inside(const struct lattice *l, uint32_t *tet) {
 
 /* ---- from lattice to mesh -------------------------------------------------------------------- */
 
-/* Tetrahedra of the largest part first; returns how many it has. part[nodes]: scratch. */
-static size_t largest_part(size_t nodes, size_t tets, uint32_t *tet, uint32_t *part, size_t *size) {
-  for (uint32_t i = 0; i < nodes; i++) part[i] = i, size[i] = 0;
-  for (size_t n = 0; n < 4 * tets; n++) { /* union-find */
-    uint32_t a = tet[n], b = tet[n / 4 * 4];
-    while (part[a] != a) a = part[a] = part[part[a]];
-    while (part[b] != b) b = part[b] = part[part[b]];
+static size_t root_of(size_t *part, size_t e) {
+  while (part[e] != e) e = part[e] = part[part[e]];
+  return e;
+}
+
+/* *tets, tet := the largest part, whose tetrahedra are joined by faces: by an edge or a node
+ * alone nothing holds. */
+static enum cb_status keep_largest_part(size_t *tets, uint32_t *tet) {
+  struct cb_face *face = cb_faces_create(*tets, tet);
+  size_t *part = malloc((*tets + 1) * sizeof *part), *size = calloc(*tets + 1, sizeof *size);
+  const bool there = face && part && size;
+  for (size_t e = 0; there && e < *tets; e++) part[e] = e;
+  for (size_t n = 1; there && n < 4 * *tets; n++) { /* union-find */
+    if (!cb_face_same(&face[n - 1], &face[n])) continue;
+    const size_t a = root_of(part, face[n - 1].tet), b = root_of(part, face[n].tet);
     part[a > b ? a : b] = a > b ? b : a;
   }
-  uint32_t best = 0;
-  for (size_t e = 0; e < tets; e++) {
-    uint32_t a = tet[4 * e];
-    while (part[a] != a) a = part[a];
+  size_t best = 0, kept = 0;
+  for (size_t e = 0; there && e < *tets; e++) {
+    const size_t a = root_of(part, e);
     if (++size[a] > size[best]) best = a;
   }
-  size_t kept = 0;
-  for (size_t e = 0; e < tets; e++) {
-    uint32_t a = tet[4 * e];
-    while (part[a] != a) a = part[a];
-    if (a == best) memmove(tet + 4 * kept++, tet + 4 * e, 4 * sizeof *tet);
-  }
-  return kept;
+  for (size_t e = 0; there && e < *tets; e++)
+    if (root_of(part, e) == best) memmove(tet + 4 * kept++, tet + 4 * e, 4 * sizeof *tet);
+  free(face);
+  free(part);
+  free(size);
+  if (!there) return cb_fail_memory("the shape");
+  *tets = kept;
+  return CB_OK;
 }
 
 /* Only nodes that are used, in their order. */
@@ -224,7 +138,7 @@ static void project(const struct lattice *l, struct cb_mesh *mesh, const size_t 
     if (!boundary[i]) continue;
     memcpy(from, p, sizeof from);
     memcpy(to, p, sizeof to);
-    if (!towards_surface(l->shape, l->cell, to)) continue;
+    if (!cb_shape_approach(l->shape, l->cell, to)) continue;
     for (double part = 1; part > 0.1; part /= 2) {
       bool good = true;
       for (int k = 0; k < 3; k++) p[k] = from[k] + part * (to[k] - from[k]);
@@ -236,32 +150,20 @@ static void project(const struct lattice *l, struct cb_mesh *mesh, const size_t 
   }
 }
 
-static int by_face(const void *a, const void *b) { return memcmp(a, b, 3 * sizeof(uint32_t)); }
-
-/* boundary[nodes] := nodes of faces that only one tetrahedron has. face[12*tets]: scratch. */
-static void find_boundary(const struct cb_mesh *mesh, uint32_t *face, uint8_t *boundary) {
-  for (size_t n = 0; n < 4 * mesh->tets; n++) {
-    uint32_t *f = face + 3 * n;
-    for (size_t j = 0, filled = 0; j < 4; j++)
-      if (j != n % 4) f[filled++] = mesh->tet[n / 4 * 4 + j];
-    for (int pass = 0; pass < 3; pass++) /* three are sorted by three exchanges */
-      if (f[pass % 2] > f[pass % 2 + 1]) {
-        const uint32_t swap = f[pass % 2];
-        f[pass % 2] = f[pass % 2 + 1], f[pass % 2 + 1] = swap;
-      }
-  }
-  qsort(face, 4 * mesh->tets, 3 * sizeof *face, by_face);
+/* boundary[nodes] := nodes of faces that only one tetrahedron has. */
+static void find_boundary(const struct cb_mesh *mesh, const struct cb_face *face,
+                          uint8_t *boundary) {
   memset(boundary, 0, mesh->nodes);
   for (size_t n = 0; n < 4 * mesh->tets; n++) {
-    const bool last = n > 0 && by_face(face + 3 * n, face + 3 * (n - 1)) == 0;
-    const bool next = n + 1 < 4 * mesh->tets && by_face(face + 3 * n, face + 3 * (n + 1)) == 0;
-    for (size_t j = 0; !last && !next && j < 3; j++) boundary[face[3 * n + j]] = 1;
+    const bool last = n > 0 && cb_face_same(&face[n], &face[n - 1]);
+    const bool next = n + 1 < 4 * mesh->tets && cb_face_same(&face[n], &face[n + 1]);
+    for (size_t j = 0; !last && !next && j < 3; j++) boundary[face[n].node[j]] = 1;
   }
 }
 
 static enum cb_status smooth(const struct lattice *l, struct cb_mesh *mesh) {
-  uint32_t *face = malloc(12 * mesh->tets * sizeof *face),
-           *around = malloc(4 * mesh->tets * sizeof *around);
+  struct cb_face *face = cb_faces_create(mesh->tets, mesh->tet);
+  uint32_t *around = malloc(4 * mesh->tets * sizeof *around);
   uint8_t *boundary = malloc(mesh->nodes);
   size_t *start = calloc(mesh->nodes + 2, sizeof *start);
   const bool there = face && around && boundary && start;
@@ -280,29 +182,25 @@ static enum cb_status smooth(const struct lattice *l, struct cb_mesh *mesh) {
   return there ? CB_OK : cb_fail_memory("the shape");
 }
 
-static const struct shape *find_shape(const char *name) {
-  for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
-    if (strcmp(shapes[i].name, name) == 0) return &shapes[i];
-  return NULL;
-}
-
-bool cb_mesh_is_shape(const char *name) { return find_shape(name) != NULL; }
+bool cb_mesh_is_shape(const char *name) { return cb_shape_find(name) != NULL; }
 
 enum cb_status cb_mesh_shape(const char *name, size_t cells, double length, struct cb_mesh *mesh) {
-  struct lattice l = {.shape = find_shape(name), .cell = 1.0 / (double)cells};
+  struct lattice l = {.shape = cb_shape_find(name), .cell = 1.0 / (double)cells};
   struct cb_mesh made = {0};
+  double high[3];
   if (!l.shape || cells < 4 || !(length > 0))
     return cb_fail(CB_INPUT,
                    "a shape is 'rabbit' or 'liver', of at least 4 cells and some length, "
                    "not '%s' of %zu cells and %g m",
                    name, cells, length);
-  for (int k = 0; k < 3; k++) l.n[k] = (size_t)ceil((l.shape->high[k] - l.shape->low[k]) / l.cell);
+  cb_shape_bounds(l.shape, l.low, high);
+  for (int k = 0; k < 3; k++) l.n[k] = (size_t)ceil((high[k] - l.low[k]) / l.cell);
   const size_t nodes = node_count(&l);
   l.X = malloc(3 * nodes * sizeof *l.X);
   l.f = malloc(nodes * sizeof *l.f);
   uint32_t *tet = NULL, *number = malloc(nodes * sizeof *number);
-  size_t *size = malloc(nodes * sizeof *size), tets = 0;
-  enum cb_status status = l.X && l.f && number && size ? CB_OK : cb_fail_memory("the shape");
+  size_t tets = 0;
+  enum cb_status status = l.X && l.f && number ? CB_OK : cb_fail_memory("the shape");
   if (!status) {
     fill_lattice(&l);
     tets = inside(&l, NULL);
@@ -311,9 +209,9 @@ enum cb_status cb_mesh_shape(const char *name, size_t cells, double length, stru
   }
   if (!status) {
     inside(&l, tet);
-    tets = largest_part(nodes, tets, tet, number, size);
-    status = compact(&l, tets, tet, number, &made);
+    status = keep_largest_part(&tets, tet);
   }
+  if (!status) status = compact(&l, tets, tet, number, &made);
   if (!status) status = smooth(&l, &made);
   for (size_t i = 0; !status && i < 3 * made.nodes; i++) made.X[i] *= length;
   if (status)
@@ -324,6 +222,5 @@ enum cb_status cb_mesh_shape(const char *name, size_t cells, double length, stru
   free(l.f);
   free(tet);
   free(number);
-  free(size);
   return status;
 }

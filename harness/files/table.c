@@ -92,6 +92,8 @@ void cb_table_missing(struct cb_table *t) { append(t, (struct cell){.kind = MISS
 
 size_t cb_table_rows(const struct cb_table *t) { return t->count / t->columns; }
 
+bool cb_table_is_empty(const struct cb_table *t) { return t->count == 0 && !t->lost; }
+
 /* The cell as written: its own text, or made in buffer. */
 static const char *cell_text(const struct cell *cell, int digits, const char *missing,
                              char buffer[32]) {

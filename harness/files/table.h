@@ -25,6 +25,7 @@ void cb_table_integer(struct cb_table *t, long long value);
 void cb_table_number(struct cb_table *t, double value); /* CSV, JSON: 17 digits; text: 4 */
 void cb_table_missing(struct cb_table *t);              /* CSV: empty, JSON: null, text: - */
 size_t cb_table_rows(const struct cb_table *t);
+bool cb_table_is_empty(const struct cb_table *t); /* nor was a cell lost */
 
 /* Write the whole table, whose last row is full, and flush. A NaN is written
  * "nan" (JSON: null, as is infinity). CSV is quoted by RFC 4180, its lines end

@@ -49,6 +49,7 @@ struct cb_frame_routine {
  * error of its condition as well, excess of the largest singular value. */
 struct cb_frame_result {
   size_t inputs, unique, not_finite;
+  size_t flipped;       /* det R < 0 */
   double error;         /* |R - exact|, unique answers only */
   double degrees;       /* the largest angle between the two, unique answers only */
   double orthogonality; /* |R^T R - I| */
@@ -70,7 +71,25 @@ enum cb_status cb_frame_measure(const struct cb_frame_routine *routine,
                                 volatile size_t *at, struct cb_frame_result *result);
 /* "right", or what is wrong in a word or two; static. */
 const char *cb_frame_verdict(const struct cb_frame_result *result, const struct cb_frame_set *set);
-bool cb_frame_right(const struct cb_frame_result *result, const struct cb_frame_set *set);
+/* The worse the verdict the larger; 0: right. */
+int cb_frame_severity(const struct cb_frame_result *result, const struct cb_frame_set *set);
+
+/* ---- a routine on all of them (summary.c) ---------------------------------------------- */
+
+/* Zeroed before the first group is added. */
+struct cb_frame_summary {
+  struct cb_frame_result worst; /* of any group; counts: of all */
+  size_t groups, right;
+  const char *group; /* of the worst verdict, among those the first of the largest error */
+  int severity;      /* there */
+  double error;      /* there */
+  double fastest_ns; /* of a group; worst.ns is the slowest's */
+};
+void cb_frame_summary_add(struct cb_frame_summary *summary, const struct cb_frame_result *result,
+                          const struct cb_frame_set *set, const struct cb_frame_group *group);
+#define CB_FRAME_SUMMARY_COLUMNS "frame,right,worst,error,orthogonality,flipped,not_finite,ns"
+void cb_frame_summary_row(const char *name, const char *arithmetic,
+                          const struct cb_frame_summary *summary, struct cb_table *table);
 
 /* ---- somebody else's (outside.c) ------------------------------------------------------- */
 
@@ -102,9 +121,10 @@ extern const char *const cb_frame_kind_name[2];
 
 struct cb_options;
 struct cb_frame_survey {
-  struct cb_table *table; /* one row a routine, precision and group */
-  char crash[256];        /* the first sentence of a library that did not come to an end */
-  size_t rows, wrong;     /* of a library */
+  struct cb_table *table;   /* one row a routine, precision and group */
+  struct cb_table *summary; /* of ours: one row a routine and precision */
+  char crash[256];          /* the first sentence of a library that did not come to an end */
+  size_t rows, wrong;       /* of a library */
   char first_wrong[160];
 };
 /* The frames of the models that --variant selects; without it those of every family, in f64 and

@@ -74,8 +74,10 @@ static void judge(const struct cb_frame_set *set, const struct cb_frame_input *i
     skew += (T[i] - (i % 4 == 0)) * (T[i] - (i % 4 == 0));
     far += (R[i] - exact->R[i]) * (R[i] - exact->R[i]);
   }
+  const Q det = determinant(R);
+  r->flipped += det < 0;
   most(&r->orthogonality, sqrt((double)skew) / u);
-  most(&r->determinant, (double)magnitude(determinant(R) - 1) / u);
+  most(&r->determinant, (double)magnitude(det - 1) / u);
   most(&r->excess, (set->kind == CB_FRAME_QR ? excess_qr : excess_polar)(input, R) / u);
   if (!input->unique) return;
   most(&r->error, sqrt((double)far) / (u * exact->condition));
@@ -165,16 +167,31 @@ enum cb_status cb_frame_measure(const struct cb_frame_routine *routine,
 
 /* ---- verdicts -------------------------------------------------------------------------------- */
 
-const char *cb_frame_verdict(const struct cb_frame_result *r, const struct cb_frame_set *set) {
+enum verdict { RIGHT, NOT_NEAREST, INACCURATE, WRONG, NOT_ORTHOGONAL, REFLECTION, NOT_FINITE };
+
+static enum verdict verdict(const struct cb_frame_result *r, const struct cb_frame_set *set) {
   const double limit = CB_FRAME_LIMIT, reflection = 1.5 / set->roundoff; /* det R = -1 */
-  if (r->not_finite > 0) return "NOT FINITE";
-  if (!(r->determinant < reflection)) return "REFLECTION";
-  if (!(r->orthogonality <= limit && r->determinant <= limit)) return "NOT ORTHOGONAL";
-  if (r->unique > 0 && !(r->error <= limit)) return r->degrees < 1 ? "inaccurate" : "WRONG";
-  if (!(r->excess <= limit)) return set->kind == CB_FRAME_QR ? "NOT QR" : "NOT NEAREST";
-  return "right";
+  if (r->not_finite > 0) return NOT_FINITE;
+  if (!(r->determinant < reflection)) return REFLECTION;
+  if (!(r->orthogonality <= limit && r->determinant <= limit)) return NOT_ORTHOGONAL;
+  if (r->unique > 0 && !(r->error <= limit)) return r->degrees < 1 ? INACCURATE : WRONG;
+  if (!(r->excess <= limit)) return NOT_NEAREST;
+  return RIGHT;
 }
 
-bool cb_frame_right(const struct cb_frame_result *r, const struct cb_frame_set *set) {
-  return strcmp(cb_frame_verdict(r, set), "right") == 0;
+int cb_frame_severity(const struct cb_frame_result *r, const struct cb_frame_set *set) {
+  return (int)verdict(r, set);
+}
+
+const char *cb_frame_verdict(const struct cb_frame_result *r, const struct cb_frame_set *set) {
+  switch (verdict(r, set)) {
+  case RIGHT: return "right";
+  case NOT_NEAREST: return set->kind == CB_FRAME_QR ? "NOT QR" : "NOT NEAREST";
+  case INACCURATE: return "inaccurate";
+  case WRONG: return "WRONG";
+  case NOT_ORTHOGONAL: return "NOT ORTHOGONAL";
+  case REFLECTION: return "REFLECTION";
+  case NOT_FINITE: return "NOT FINITE";
+  }
+  return "";
 }

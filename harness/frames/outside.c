@@ -177,10 +177,12 @@ enum cb_status cb_outside_open(const char *path, struct cb_outside *library) {
   char *absolute = realpath(path, NULL);
   struct cb_outside_end end;
   struct left *left;
-  if (!absolute || strlen(absolute) >= sizeof made.path) {
+  if (absolute && strlen(absolute) >= sizeof made.path) {
     free(absolute);
-    return cb_fail(CB_INPUT, "cannot load '%s': %s", path, strerror(errno));
+    absolute = NULL, errno = ENAMETOOLONG;
   }
+  if (!absolute && errno == ENOMEM) return cb_fail_memory("the library's name");
+  if (!absolute) return cb_fail(CB_INPUT, "cannot load '%s': %s", path, strerror(errno));
   strcpy(made.path, absolute);
   free(absolute);
   const struct call call = {.library = &made};

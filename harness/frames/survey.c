@@ -108,6 +108,26 @@ static enum cb_status measure_variant(struct work *w, const struct cb_variant *v
   return status ? status : cb_frame_measure(&routine, *set, &(*set)->group[g], NULL, r);
 }
 
+/* Its rows of both tables. */
+static enum cb_status survey_frame(struct work *w, const struct cb_variant *v, double progress) {
+  struct cb_frame_summary summary = {.groups = 0};
+  const char *arithmetic = v->arithmetic->name;
+  char name[96];
+  frame_name(v, name);
+  for (size_t g = 0; g < CB_FRAME_GROUPS; g++) {
+    const struct cb_frame_set *set;
+    struct cb_frame_result r;
+    cb_progress(progress + (double)g, name);
+    const enum cb_status status = measure_variant(w, v, g, &set, &r);
+    if (status) return status;
+    result_cells(w, name, arithmetic, set->group[g].name, &r, cb_frame_verdict(&r, set));
+    cb_table_integer(w->survey->table, (long long)r.flipped);
+    cb_frame_summary_add(&summary, &r, set, &set->group[g]);
+  }
+  cb_frame_summary_row(name, arithmetic, &summary, w->survey->summary);
+  return CB_OK;
+}
+
 enum cb_status cb_frame_survey_ours(const struct cb_options *options,
                                     const enum cb_frame_kind *kind,
                                     struct cb_frame_survey *survey) {
@@ -115,25 +135,17 @@ enum cb_status cb_frame_survey_ours(const struct cb_options *options,
   size_t most;
   cb_variants(&most);
   const struct cb_variant **list = calloc(most, sizeof *list);
-  survey->table = cb_table_create("frame," COLUMNS);
-  enum cb_status status = list && survey->table ? CB_OK : cb_fail_memory("the table of frames");
+  survey->table = cb_table_create("frame," COLUMNS ",flipped");
+  survey->summary = cb_table_create(CB_FRAME_SUMMARY_COLUMNS);
+  enum cb_status status =
+      list && survey->table && survey->summary ? CB_OK : cb_fail_memory("the table of frames");
   const size_t count = status ? 0 : select_ours(options, kind, list);
   if (!status && !count)
     status = cb_fail(CB_INPUT, "what is selected has no frame that runs here; 'corobench list' "
                                "shows all models");
   cb_progress_begin("frames", (double)(count * CB_FRAME_GROUPS));
   for (size_t i = 0; i < count && !status; i++)
-    for (size_t g = 0; g < CB_FRAME_GROUPS && !status; g++) {
-      const struct cb_frame_set *set;
-      struct cb_frame_result r;
-      char name[96];
-      frame_name(list[i], name);
-      cb_progress((double)(i * CB_FRAME_GROUPS + g), name);
-      status = measure_variant(&w, list[i], g, &set, &r);
-      if (!status)
-        result_cells(&w, name, list[i]->arithmetic->name, set->group[g].name, &r,
-                     cb_frame_verdict(&r, set));
-    }
+    status = survey_frame(&w, list[i], (double)(i * CB_FRAME_GROUPS));
   cb_progress_end();
   free(list);
   close_work(&w);
@@ -169,7 +181,7 @@ static enum cb_status check_group(struct work *w, const struct cb_outside *libra
   enum cb_status status = measure_variant(w, ours, g, &set, &our);
   if (!status) status = cb_outside_measure(library, set, &set->group[g], &r, end);
   if (status) return status;
-  const bool done = end->how == CB_OUTSIDE_DONE, right = done && cb_frame_right(&r, set);
+  const bool done = end->how == CB_OUTSIDE_DONE, right = done && cb_frame_severity(&r, set) == 0;
   const char *verdict = done ? cb_frame_verdict(&r, set) : verdicts[end->how];
   result_cells(w, name, ours->arithmetic->name, set->group[g].name, &r, verdict);
   number(survey->table, our.error);

@@ -8,11 +8,11 @@
 #include <string.h>
 
 #include "harness/error.h"
+#include "harness/files/faces.h"
 #include "harness/files/vtk.h"
 
-struct cb_face {
-  uint32_t sorted[3]; /* first: they are compared by it */
-  uint32_t node[3];   /* seen from outside at rest: counterclockwise */
+struct cb_film_face {
+  uint32_t node[3]; /* seen from outside at rest: counterclockwise */
   uint32_t tet;
 };
 
@@ -28,42 +28,34 @@ static void cross(const double *x, const uint32_t *node, double *n) {
     n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
 }
 
-static struct cb_face face_of(const struct cb_mesh *mesh, size_t e, size_t opposite) {
-  const uint32_t *t = mesh->tet + 4 * e, other = t[opposite];
-  struct cb_face f = {.tet = (uint32_t)e};
+/* Turned so that the tetrahedron is behind it. */
+static struct cb_film_face turned(const struct cb_mesh *mesh, const struct cb_face *face) {
+  const uint32_t *t = mesh->tet + 4 * face->tet;
+  struct cb_film_face f = {.tet = face->tet};
   double n[3], out = 0;
-  for (size_t j = 0, filled = 0; j < 4; j++)
-    if (j != opposite) f.node[filled++] = t[j];
+  memcpy(f.node, face->node, sizeof f.node);
   cross(mesh->X, f.node, n);
-  for (int k = 0; k < 3; k++) out += n[k] * (mesh->X[3 * f.node[0] + k] - mesh->X[3 * other + k]);
-  memcpy(f.sorted, f.node, sizeof f.sorted);
-  for (int pass = 0; pass < 3; pass++) /* three are sorted by three exchanges */
-    if (f.sorted[pass % 2] > f.sorted[pass % 2 + 1]) {
-      const uint32_t swap = f.sorted[pass % 2];
-      f.sorted[pass % 2] = f.sorted[pass % 2 + 1], f.sorted[pass % 2 + 1] = swap;
-    }
+  for (int j = 0; j < 4; j++) /* of its own nodes nothing is added */
+    for (int k = 0; k < 3; k++) out += n[k] * (mesh->X[3 * f.node[0] + k] - mesh->X[3 * t[j] + k]);
   if (out > 0) return f;
   const uint32_t swap = f.node[1];
   f.node[1] = f.node[2], f.node[2] = swap;
   return f;
 }
 
-static int by_nodes(const void *a, const void *b) { return memcmp(a, b, 3 * sizeof(uint32_t)); }
-
 /* Those that only one tetrahedron has. */
 static enum cb_status find_faces(struct cb_film *film) {
   const struct cb_mesh *mesh = &film->body->at.mesh;
   const size_t all = 4 * mesh->tets;
-  struct cb_face *face = malloc(all * sizeof *face);
-  if (!face) return cb_fail_memory("the pictures");
-  for (size_t n = 0; n < all; n++) face[n] = face_of(mesh, n / 4, n % 4);
-  qsort(face, all, sizeof *face, by_nodes);
-  for (size_t first = 0, next; first < all; first = next) {
-    for (next = first + 1; next < all && by_nodes(face + first, face + next) == 0;) next++;
-    if (next == first + 1) face[film->faces++] = face[first];
+  struct cb_face *face = cb_faces_create(mesh->tets, mesh->tet);
+  film->face = malloc(all * sizeof *film->face);
+  const bool there = face && film->face;
+  for (size_t first = 0, next; there && first < all; first = next) {
+    for (next = first + 1; next < all && cb_face_same(face + first, face + next);) next++;
+    if (next == first + 1) film->face[film->faces++] = turned(mesh, face + first);
   }
-  film->face = face;
-  return CB_OK;
+  free(face);
+  return there ? CB_OK : cb_fail_memory("the pictures");
 }
 
 /* ---- one picture ---------------------------------------------------------------------------- */
@@ -87,7 +79,7 @@ static double shade(const double *n) {
 static void write_faces(struct cb_film *film, const double *x) {
   FILE *f = film->shape.stream;
   for (size_t i = 0; i < film->faces; i++) {
-    const struct cb_face *face = &film->face[i];
+    const struct cb_film_face *face = &film->face[i];
     double n[3];
     cross(x, face->node, n);
     for (int j = 0; j < 4; j++) {

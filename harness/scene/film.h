@@ -10,7 +10,7 @@
 
 enum { CB_STRIP = 8 }; /* pictures in a strip, or all if there are fewer */
 
-struct cb_face; /* of the boundary */
+struct cb_film_face; /* of the boundary */
 
 struct cb_film {
   const struct cb_body *body;
@@ -23,7 +23,7 @@ struct cb_film {
     double way;      /* that the nodes have gone so far: mean, of the size */
   } * picture;
   double *before; /* [3*nodes] in the last picture */
-  struct cb_face *face;
+  struct cb_film_face *face;
   size_t faces;
   struct cb_output shape, grips;
 };

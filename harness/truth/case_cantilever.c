@@ -38,6 +38,7 @@ static enum cb_status bend(const char *model, size_t across, double *down) {
       status = CB_OK;
       break;
     }
+    if (status == CB_MEMORY) cb_fail_memory("the cantilever"); /* the solver says nothing */
     if (!status) cb_beam_tip(&beam, &along, &down[n]);
     if (!status && cb_interrupted()) status = cb_fail(CB_INTERRUPTED, "interrupted; no table");
   }

@@ -49,7 +49,8 @@ enum cb_status cb_truth_newton(struct cb_truth *t) {
                                   beam.fixed, beam.external, 1e-10, beam.x, &newton);
     cb_beam_free(&beam);
     const bool converged = status == CB_OK;
-    if (status == CB_NUMERIC) status = CB_OK; /* is what the row says */
+    if (status == CB_NUMERIC) status = CB_OK;                   /* is what the row says */
+    if (status == CB_MEMORY) cb_fail_memory("Newton's method"); /* the solver says nothing */
     snprintf(name, sizeof name, "Newton's order, alpha %g; fine: iterations", alphas[n % 2]);
     struct cb_truth_row row = cb_truth_row(name, runs[k].label, "Nocedal & Wright 2006");
     row.fine = converged ? (double)newton.iterations : NAN;

@@ -34,8 +34,9 @@ static enum cb_status imbalance(const char *model, const struct cb_mesh *mesh, c
   struct cb_probe probe;
   struct cb_material m;
   snprintf(name, sizeof name, "%s/ebe/f64", model);
-  double *x = malloc(6 * mesh->nodes * sizeof *x), *f = x + 3 * mesh->nodes;
+  double *x = malloc(6 * mesh->nodes * sizeof *x);
   if (!x) return cb_fail_memory("the patch");
+  double *f = x + 3 * mesh->nodes;
   enum cb_status status = cb_material_isotropic(1000, 0.3, 1000, &m);
   if (!status) status = cb_probe_open(cb_variant_find(name), mesh, &m, &probe);
   if (!status) {

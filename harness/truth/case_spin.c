@@ -88,6 +88,7 @@ static enum cb_status fly(const char *model, struct flight *f) {
     status = cb_operator_create(cb_variant_find(name), &s.mesh, &s.material, cb_step_scale(&step),
                                 1, &op);
   if (!status) status = cb_stepper_create(op, &step, s.mass, NULL, &stepper);
+  if (status == CB_MEMORY) cb_fail_memory("the flight"); /* kernels say nothing */
   if (!status) totals(&s, p0, l0, &e0);
   for (size_t n = 1, look = 0; !status && look < LOOKS; n++) {
     cb_stepper_step(stepper, s.x, s.v, NULL);

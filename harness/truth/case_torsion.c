@@ -53,12 +53,12 @@ static enum cb_status hold(const char *model, size_t across, size_t widths, doub
     fixed[i] = X[0] < 1e-9 || X[0] > length - 1e-9;
   }
   status = cb_equilibrium_solve(model, CB_NEWTON_USUAL, &mesh, &m, fixed, NULL, 1e-7, x, &newton);
-  if (status) {
+  if (status == CB_MEMORY) cb_fail_memory("the twisted bar"); /* the solver says nothing */
+  if (status == CB_NUMERIC)
     status =
         cb_fail(status, "the twisted bar of %s has no equilibrium: %zu iterations, residual %.2g",
                 model, newton.iterations, newton.residual[newton.iterations]);
-    goto done;
-  }
+  if (status) goto done;
   snprintf(name, sizeof name, "%s/ebe/f64", model);
   status = cb_probe_open(cb_variant_find(name), &mesh, &m, &probe);
   if (status) goto done;

@@ -40,8 +40,9 @@ static enum cb_status pull(const struct cb_model *m, const struct cb_mesh *mesh,
   struct cb_probe probe;
   struct cb_material material;
   snprintf(name, sizeof name, "%s/ebe/f64", m->name);
-  double *x = malloc(6 * mesh->nodes * sizeof *x), *f = x + 3 * mesh->nodes;
+  double *x = malloc(6 * mesh->nodes * sizeof *x);
   if (!x) return cb_fail_memory("the bar");
+  double *f = x + 3 * mesh->nodes;
   enum cb_status status = cb_material_isotropic(YOUNG, POISSON, 1000, &material);
   if (!status) status = cb_probe_open(cb_variant_find(name), mesh, &material, &probe);
   if (!status) {

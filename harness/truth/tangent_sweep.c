@@ -21,15 +21,23 @@ struct work {
   double *x, *up, *down, *Ku;
 };
 
-static void fill(struct work *w, unsigned long seed) {
+static enum cb_status prepare(struct work *w, unsigned long seed) {
+  const size_t numbers = 3 * w->patches.mesh.nodes;
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-  if (!rng) return;
+  w->direction = malloc(6 * numbers * sizeof *w->direction);
+  if (!rng || !w->direction) {
+    gsl_rng_free(rng);
+    return CB_MEMORY;
+  }
+  w->strain = w->direction + numbers, w->x = w->strain + numbers, w->up = w->x + numbers;
+  w->down = w->up + numbers, w->Ku = w->down + numbers;
   gsl_rng_set(rng, seed);
-  for (size_t i = 0; i < 3 * w->patches.mesh.nodes; i++) {
+  for (size_t i = 0; i < numbers; i++) {
     w->direction[i] = gsl_ran_gaussian(rng, w->patches.size);
     w->strain[i] = gsl_ran_gaussian(rng, w->patches.size / 3);
   }
   gsl_rng_free(rng);
+  return CB_OK;
 }
 
 /* Largest |K u + (f(x + e u) - f(x - e u)) / 2 e| / |df| over the elements, in quad. */
@@ -87,15 +95,8 @@ enum cb_status cb_tangent_sweep(const struct cb_options *options, struct cb_tabl
   struct cb_table *t = cb_table_create("model,strain,error");
   enum cb_status status =
       t ? cb_patches_random(ELEMENTS, 1, 0, options->seed, &w.patches) : CB_MEMORY;
-  if (!status) {
-    const size_t numbers = 3 * w.patches.mesh.nodes;
-    w.direction = malloc(6 * numbers * sizeof *w.direction);
-    if (!w.direction) status = CB_MEMORY;
-    w.strain = w.direction + numbers, w.x = w.strain + numbers, w.up = w.x + numbers;
-    w.down = w.up + numbers, w.Ku = w.down + numbers;
-  }
+  if (!status) status = prepare(&w, options->seed);
   if (status == CB_MEMORY) cb_fail_memory("the sweep of tangents");
-  if (!status) fill(&w, options->seed);
   for (size_t m = 0; !status && m < sizeof models / sizeof *models; m++)
     if (cb_truth_asked(&asked, models[m])) status = sweep_model(&w, models[m], t);
   free(w.direction);

@@ -11,8 +11,9 @@
 
 static const char doc[] =
     "Find the rotations of a set of 3x3 matrices with exact answers, in named groups, and say how "
-    "right, how robust and how fast the frames of the models are; or, with --check, a routine of "
-    "your own beside ours. That is a shared library with one or both of\n"
+    "right, how robust and how fast the frames of the models are, each in one row (csv, json: in "
+    "every group); or, with --check, a routine of your own beside ours. That is a shared library "
+    "with one or both of\n"
     "  void corobench_frame(const double F[9], double R[9]);\n"
     "  void corobench_frame_f32(const float F[9], float R[9]);\n"
     "F and R row-major, R not overlapping F. Exit status 1 when it is not right in every group, 2 "
@@ -24,11 +25,16 @@ static const char doc[] =
     "s1 (a nearest rotation reaches it even where it is not unique). Of 'qr', F = R T, T upper "
     "triangular with T11, T22 >= 0: condition 1 + |f2|/|f2 across f1|, excess: how far R'F is from "
     "such a T. right: all finite and each at most 1000 roundoffs; inaccurate: less than a degree "
-    "off. Frames that are made for lanes are called for a whole group at once.";
+    "off. In one row: in how many groups it is right; the worst group, by verdict, then by error; "
+    "the "
+    "worst error and orthogonality of all groups; answers with det R < 0 (flipped) and with NaN or "
+    "infinity; ns a call in the fastest and in the slowest group. Frames that are made for lanes "
+    "are called for a whole group at once.";
 
-enum { KEY_CHECK = 1, KEY_KIND, KEY_WRITE };
+enum { KEY_CHECK = 1, KEY_GROUPS, KEY_KIND, KEY_WRITE };
 static const struct argp_option own_options[] = {
     {"check", KEY_CHECK, "LIB.so", 0, "Check this library's routine", 0},
+    {"groups", KEY_GROUPS, NULL, 0, "A row for each group", 0},
     {"kind", KEY_KIND, "KIND", 0,
      "What it is meant to find: polar (default), the nearest rotation, or qr, Gram-Schmidt on the "
      "columns",
@@ -42,13 +48,14 @@ static const struct argp_option own_options[] = {
 struct request {
   const char *check, *write;
   enum cb_frame_kind kind;
-  bool kind_given;
+  bool kind_given, groups;
 };
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   struct request *r = state->input;
   switch (key) {
   case KEY_CHECK: r->check = text; return 0;
+  case KEY_GROUPS: r->groups = true; return 0;
   case KEY_WRITE: r->write = text; return 0;
   case KEY_KIND:
     r->kind_given = true;
@@ -84,8 +91,14 @@ static enum cb_status write_set(const struct cb_options *o, const struct request
 static enum cb_status print_ours(const struct cb_options *o, const struct request *r) {
   struct cb_frame_survey survey = {.table = NULL};
   enum cb_status status = cb_frame_survey_ours(o, r->kind_given ? &r->kind : NULL, &survey);
-  if (!status) status = cb_table_print(survey.table, o->format, stdout);
+  const bool all = r->groups || o->format != CB_TABLE;
+  if (!status) status = cb_table_print(all ? survey.table : survey.summary, o->format, stdout);
+  if (!status && !all)
+    puts("\nright: groups without a wrong answer; worst: the group; then the worst of all groups, "
+         "in "
+         "roundoffs;\nns: in the fastest and the slowest group. Group by group: --groups");
   cb_table_free(survey.table);
+  cb_table_free(survey.summary);
   return status;
 }
 
