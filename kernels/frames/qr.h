@@ -82,13 +82,9 @@ INLINE CHOICE qr_usual(T square_b, T square_c, const T *y) {
          LESS(LIT(1.0 / 32) * ABS(y[1]), y[2]);
 }
 
-/* R := Q, right-handed, with e_b, e_c in its first axis and first plane.
- * in   e[9]  edges b-a, c-a, d-a, one a row, m
- * out  R[9]  rotation, row-major; columns are the local axes
- *      y[3]  e_b and e_c in local axes: x_b, x_c, y_c, m; x_b, y_c >= 0
- * b-a = 0, or c-a along it: an axis that makes the element right-handed if one does. */
-INLINE void frame_qr_axes(const T *e, T *R, T *y) {
-  T q[9], r[3];
+/* q[9] := axes, the third not yet, y[3] := x_b, x_c, y_c; right where usual. */
+INLINE CHOICE qr_axes(const T *e, T *q, T *y) {
+  T r[3];
   T square = dot3(e, e), inverse = RSQRT(square);
   y[0] = square * inverse;
   for (int i = 0; i < 3; i++) q[i] = inverse * e[i];
@@ -98,15 +94,38 @@ INLINE void frame_qr_axes(const T *e, T *R, T *y) {
   inverse = RSQRT(rest);
   y[2] = rest * inverse;
   for (int i = 0; i < 3; i++) q[3 + i] = inverse * r[i];
-  qr_repair(qr_usual(square, rest, y), e, q, y);
+  return qr_usual(square, rest, y);
+}
+
+INLINE void qr_complete(T *q, T *R) {
   cross3(q, q + 3, q + 6);
   for (int i = 0; i < 9; i++) R[i] = q[i % 3 * 3 + i / 3];
+}
+
+/* R := Q, right-handed, with e_b, e_c in its first axis and first plane.
+ * in   e[9]  edges b-a, c-a, d-a, one a row, m
+ * out  R[9]  rotation, row-major; columns are the local axes
+ *      y[3]  e_b and e_c in local axes: x_b, x_c, y_c, m; x_b, y_c >= 0
+ * b-a = 0, or c-a along it: an axis that makes the element right-handed if one does. */
+INLINE void frame_qr_axes(const T *e, T *R, T *y) {
+  T q[9];
+  qr_repair(qr_axes(e, q, y), e, q, y);
+  qr_complete(q, R);
 }
 
 /* The same, and y[6] := all edges in local axes: x_d, y_d, z_d as well. */
 INLINE void frame_qr(const T *e, T *R, T *y) {
   frame_qr_axes(e, R, y);
   apply3_transposed(R, e + 6, y + 3);
+}
+
+/* That where it is usual: says where. */
+INLINE CHOICE frame_qr_usually(const T *e, T *R, T *y) {
+  T q[9];
+  CHOICE usual = qr_axes(e, q, y);
+  qr_complete(q, R);
+  apply3_transposed(R, e + 6, y + 3);
+  return usual;
 }
 
 #endif

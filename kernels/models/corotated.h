@@ -32,8 +32,9 @@ OUTLINE void frame_called(const struct cb_elements *E, const T *e, const T *F, T
  * out     R[9]  frame
  *         F[9]  such that F R^T - I, made symmetric, is the corotated strain in world
  *               axes; not read for a precomputed B
- *         L[12] exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
- *               a symmetric one; then, where this returns true, any stress besides */
+ *         L[3]  exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
+ *               a symmetric one
+ * Returns false where that is not for each lane (exact): it is for ANY_PACK then. */
 #define FRAME_WORLD frame_world
 INLINE bool frame_world(const struct cb_elements *E, int policy, int exact, int ortho,
                         const T *rest, const T *e, const T *own, T *memory, T *R, T *F, T *L) {
@@ -44,7 +45,7 @@ INLINE bool frame_world(const struct cb_elements *E, int policy, int exact, int 
   else
     FRAME_ROTATION(own, F, memory, R);
   STAGE(STAGE_FORCE);
-  return false;
+  return true;
 }
 #endif
 
@@ -60,7 +61,7 @@ static void frames(size_t count, const void *F, void *R) {
   T rest[REST_ORTHOTROPIC] = {0};
   rest[REST_G] = rest[REST_G + 4] = rest[REST_G + 8] = rest[REST_EDGE] = LIT(1);
   for (size_t n = 0; n < count; n += LANES) {
-    T e[9], memory[FRAME_MEMORY] = {0}, Q[9], G[9], L[12];
+    T e[9], memory[FRAME_MEMORY] = {0}, Q[9], G[9], L[3];
     const size_t live = count - n < LANES ? count - n : LANES;
     for (size_t l = 0; l < LANES; l++)
       for (size_t i = 0; i < 9; i++)
@@ -195,23 +196,14 @@ INLINE void add_lower(const T *R, T scale, const T *L, T *M) {
   }
 }
 
-/* M += scale R P R^T */
-INLINE void add_stress(const T *R, T scale, const T *P, T *M) {
-  T RP[9], world[9];
-  multiply3(R, P, RP);
-  multiply3_nt(RP, R, world);
-  for (int i = 0; i < 9; i++) M[i] = M[i] + scale * world[i];
-}
-
-/* f := h f - c K v, where the stress is a function of F R^T, and of L; all of it? */
+/* f := h f - c K v, where the stress is a function of F R^T, and of L. */
 INLINE void world_forces(const struct cb_elements *E, int policy, int exact, int ortho,
-                         const T *rest, const T *R, const T *F, const T *L, bool all, T h,
-                         const T *e, const T *w, const T *ev, T *f) {
+                         const T *rest, const T *R, const T *F, const T *L, T h, const T *e,
+                         const T *w, const T *ev, T *f) {
   T Z[9], M[9], scale = -(h * rest[REST_FORCE]);
   world_strain(policy, rest, R, F, scale, e, ev, w, Z);
   stress(ortho, E->k, rest + REST_D, Z, M);
   if (exact) add_lower(R, scale, L, M);
-  if (__builtin_expect(all, 0)) add_stress(R, scale, L + 3, M);
   forces3(M, w, f);
 }
 
@@ -225,14 +217,49 @@ INLINE void local_gradients(int policy, const T *rest, const T *e, const T *R, T
   }
 }
 
+#ifdef ANY_PACK
+/* An isotropic pack with precomputed B and an exact gradient of any shape: by a call, from
+ * the beginning, so that the usual pack holds nothing in registers for it. */
+RARE void corotated_any(const struct cb_elements *E, const T *rest, const T *e, const T *own,
+                        const T *ev, T h, T *memory, T *R, T *w, T *f) {
+  T P[9], y[6], RP[9], Z[9] = {0}, turned[9], M[9];
+  ANY_PACK(E, POLICY_PRECOMPUTED, 1, 0, rest, e, own, memory, R, P, y);
+  world_gradients(POLICY_PRECOMPUTED, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
+  if (ev)
+    for (int i = 0; i < 9; i++)
+      for (int j = 0; j < 9; j += 3) Z[i] = Z[i] - ev[j + i / 3] * w[j + i % 3];
+  stress(0, E->k, rest, Z, M);
+  multiply3(R, P, RP);
+  multiply3_nt(RP, R, turned);
+  for (int i = 0; i < 9; i++) M[i] = M[i] - h * rest[REST_FORCE] * turned[i];
+  forces3(M, w, f);
+}
+
+INLINE void call_any(const struct cb_elements *E, const T *rest, const T *e, const T *own,
+                     const T *ev, T h, T *memory, T *R, T *w, T *f) {
+  T r[REST_ISOTROPIC], now[9], first[9], velocity[9], frame[9], gradients[9], force[9];
+  for (int i = 0; i < REST_ISOTROPIC; i++) r[i] = rest[i];
+  for (int i = 0; i < 9; i++) now[i] = e[i], first[i] = own[i], velocity[i] = ev ? ev[i] : LIT(0);
+  corotated_any(E, r, now, first, ev ? velocity : NULL, h, memory, frame, gradients, force);
+  for (int i = 0; i < 9; i++) R[i] = frame[i], w[i] = gradients[i], f[i] = force[i];
+}
+#endif
+
 /* Frame, gradients and force of one pack. Isotropic or frameless: w are world
  * gradients and R is not needed afterwards; orthotropic: w are local gradients. */
 INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
                            const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
                            T *R, T *w, T *f) {
   if (NO_FRAME || !ortho) {
-    T F[9], L[12];
-    const bool all = FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
+    T F[9], L[3];
+    const bool done = FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
+    (void)done;
+#ifdef ANY_PACK
+    if (exact && __builtin_expect(!done, 0)) {
+      call_any(E, rest, e, own, ev, h, memory, R, w, f);
+      return;
+    }
+#endif
     STAGE(STAGE_B);
 #ifdef LAZY
     lazy_gradients(E, rest, e, R, F, memory, w);
@@ -240,7 +267,7 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
     world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
 #endif
     STAGE(STAGE_FORCE);
-    world_forces(E, policy, exact, ortho, rest, R, F, L, all, h, e, w, ev, f);
+    world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
     return;
   }
   T P[9], y[6], q[9], p[9];

@@ -9,6 +9,7 @@
 #define NO_FRAME 0
 #define FRAME_PACK qr_pack
 #define FRAME_WORLD qr_world
+#define ANY_PACK qr_pack
 #include "kernels/models/corotated.h"
 
 COROTATED_FAMILY(qr, "qr", "QR frame", "Nesme, Payan, Faure 2005", AXES_EDGES, 0, LAWS_ELEMENT,

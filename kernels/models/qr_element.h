@@ -66,8 +66,8 @@ INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
  *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
  *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11
  * Where an edge or a face collapses W has no limit and its gradient no bound: divided by
- * LEAST_EDGE at least, which leaves a ghost torque. Returns whether any lane is so. */
-INLINE bool qr_gradient(const T *U, T *P) {
+ * LEAST_EDGE at least, which leaves a ghost torque. Says where it is not bounded. */
+INLINE CHOICE qr_gradient(const T *U, T *P) {
   const T least = LEAST_EDGE;
   T first = LIT(1) / SELECT(U[0] > least, U[0], least);
   T second = LIT(1) / SELECT(U[2] > least, U[2], least);
@@ -75,7 +75,7 @@ INLINE bool qr_gradient(const T *U, T *P) {
   P[7] = (s23 * U[5] - s33 * U[4]) * second;
   P[6] = (s13 * U[5] - s33 * U[3] - P[7] * U[1]) * first;
   P[3] = (s12 * U[2] + s13 * U[4] - s22 * U[1] - s23 * U[3]) * first;
-  return !ALL(LESS(least, U[0]) & LESS(least, U[2]));
+  return LESS(least, U[0]) & LESS(least, U[2]);
 }
 
 /* D[9]: the least with which P + D makes no torque, (P + D) U^T symmetric: D = [w]x U with
@@ -107,15 +107,6 @@ RARE void balance_of_any(const T *stretch, const T *P, T *D) {
   for (int i = 0; i < 9; i++) D[i] = sum[i] - P[i];
 }
 
-/* The same; U, P and D need not be in memory for it. */
-INLINE void qr_balance(const T *U, const T *P, T *D) {
-  const T stretch[6] = {U[0], U[1], U[2], U[3], U[4], U[5]};
-  const T stress_[9] = {P[0], P[1], P[2], P[3], P[4], P[5], P[6], P[7], P[8]};
-  T more[9];
-  balance_of_any(stretch, stress_, more);
-  for (int i = 0; i < 9; i++) D[i] = more[i];
-}
-
 INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
                     const T *e, const T *own, T *memory, T *R, T *P, T *y) {
   T U[6];
@@ -124,9 +115,11 @@ INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int orth
   STAGE(STAGE_FORCE);
   qr_stretch(E, policy, rest, e, R, y, U);
   qr_stress(E->k, ortho, rest, U, P);
-  if (!exact || !qr_gradient(U, P)) return;
-  T D[9];
-  qr_balance(U, P, D);
+  if (!exact || ALL(qr_gradient(U, P))) return;
+  T stretch[6], stress[9], D[9];
+  for (int i = 0; i < 9; i++) stress[i] = P[i];
+  for (int i = 0; i < 6; i++) stretch[i] = U[i];
+  balance_of_any(stretch, stress, D);
   for (int i = 0; i < 9; i++) P[i] = P[i] + D[i];
 }
 
@@ -138,16 +131,16 @@ INLINE bool qr_world(const struct cb_elements *E, int policy, int exact, int ort
     frame_qr_axes(own, R, y);
     STAGE(STAGE_FORCE);
     if (policy != POLICY_PRECOMPUTED) qr_gradient_of_edges(E, policy, rest, e, F);
-    return false;
+    return true;
   }
-  frame_qr(own, R, y);
+  CHOICE usual = frame_qr_usually(own, R, y);
   STAGE(STAGE_FORCE);
   qr_stretch(E, policy, rest, e, R, y, U);
+  if (!ALL(usual & LESS(LEAST_EDGE, U[0]) & LESS(LEAST_EDGE, U[2]))) return false;
   qr_stress(E->k, ortho, rest, U, P);
-  const bool bounded = qr_gradient(U, P);
+  qr_gradient(U, P);
   L[0] = P[3] - P[1], L[1] = P[6] - P[2], L[2] = P[7] - P[5];
-  if (bounded) qr_balance(U, P, L + 3);
-  return bounded;
+  return true;
 }
 
 #endif
