@@ -104,7 +104,7 @@ fuzz: | $(FIRST) ## feed every reader with broken files (clang), FUZZ_SECONDS=8 
 
 fuzzers: $(FUZZERS)
 
-robustness: programs ## all that may go wrong, tried for under 4 minutes (builds apart): one table
+robustness: programs ## all that may go wrong, tried for some minutes (builds apart): one table
 	@$(MAKE) $(SANITIZED) build-sanitize/tests/test_mutations build-sanitize/tests/test_shortage
 	@$(MAKE) $(RACING) $(RACERS)
 	@$(MAKE) $(FUZZING) fuzzers
