@@ -179,6 +179,7 @@ $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
 	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
 
 $(BUILD)/tests/test_shortage: private COUNT += $(SHORTAGE)
+$(BUILD)/tests/test_shortage: | $(LIBRARIES)
 
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
 	@echo 'LINK $@'
