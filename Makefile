@@ -6,7 +6,9 @@ OPT     = -O3
 WARN    = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror=implicit -Wno-psabi
 # No -ffast-math: it removes operations. No contraction: f64 rounds as `counted` counts.
 OPENMP  = -fopenmp
-CFLAGS  = -std=gnu11 $(OPT) -g1 -fno-math-errno -ffp-contract=off $(WARN) $(WERROR) $(SANFLAGS) $(OPENMP)
+CFLAGS  = -std=gnu11 $(OPT) -g1 -fno-math-errno -ffp-contract=off $(SHARED) $(WARN) $(WERROR) $(SANFLAGS) $(OPENMP)
+# The tests share one library of all objects: a hundred copies of it would take 20 GB of disk.
+SHARED  = -fPIC -fno-semantic-interposition
 INCLUDES = -I. -I/usr/include/suitesparse -I/usr/local/include/suitesparse
 CPPFLAGS = $(INCLUDES) -D_GNU_SOURCE -DCB_COMPILER_FLAGS='"$(OPT) -fno-math-errno -ffp-contract=off"'
 LDLIBS  = -lcholmod -lgsl -lgslcblas -ljansson -lquadmath -lm -lpthread -ldl
@@ -174,12 +176,19 @@ $(BUILD)/$(1)/%.o: %.c $(BUILD)/flags
 endef
 $(foreach a,$(ARITHMETICS),$(eval $(call arithmetic_rule,$(a))))
 
-$(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(OBJECTS)
+$(BUILD)/tests/libcorobench.so: $(OBJECTS)
 	@echo 'LINK $@'
-	@$(CC) $(CFLAGS) $(COUNT) -o $@ $^ $(LDLIBS) -lcmocka
+	@mkdir -p $(@D)
+	@$(CC) $(CFLAGS) $(COUNT) -shared -Wl,-Bsymbolic -o $@ $^ $(LDLIBS)
 
-$(BUILD)/tests/test_shortage: private COUNT += $(SHORTAGE)
-$(BUILD)/tests/test_shortage: | $(LIBRARIES)
+$(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(BUILD)/tests/libcorobench.so
+	@echo 'LINK $@'
+	@$(CC) $(CFLAGS) $(COUNT) -Wl,-rpath,'$$ORIGIN' -o $@ $^ $(LDLIBS) -lcmocka
+
+# Of its own, as here the objects' allocations are the test's.
+$(BUILD)/tests/test_shortage: $(BUILD)/tests/test_shortage.o $(OBJECTS) | $(LIBRARIES)
+	@echo 'LINK $@'
+	@$(CC) $(CFLAGS) $(COUNT) $(SHORTAGE) -o $@ $^ $(LDLIBS) -lcmocka
 
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(FUZZED:%.c=$(BUILD)/%.o)
 	@echo 'LINK $@'
