@@ -27,18 +27,19 @@ OUTLINE void frame_called(const struct cb_elements *E, const T *e, const T *F, T
 
 #ifndef FRAME_WORLD
 /* Frame and deformation gradient of one pack.
- * in      policy, exact, ortho  constants; rest; e, own (update_pack_fn)
+ * in      policy, exact, ortho, quick  constants; rest; e, own (update_pack_fn)
  * in/out  memory
  * out     R[9]  frame
  *         F[9]  such that F R^T - I, made symmetric, is the corotated strain in world
  *               axes; not read for a precomputed B
  *         L[3]  exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
  *               a symmetric one
- * Returns false where that is not for each lane (exact): it is for ANY_PACK then. */
+ * Returns false where that is not for each lane: quick_pack_fn, or (exact) a pack for
+ * ANY_PACK. */
 #define FRAME_WORLD frame_world
-INLINE bool frame_world(const struct cb_elements *E, int policy, int exact, int ortho,
+INLINE bool frame_world(const struct cb_elements *E, int policy, int exact, int ortho, int quick,
                         const T *rest, const T *e, const T *own, T *memory, T *R, T *F, T *L) {
-  (void)E, (void)exact, (void)own, (void)memory, (void)L;
+  (void)E, (void)exact, (void)quick, (void)own, (void)memory, (void)L;
   deformation_gradient(policy, rest, e, F);
   if (ortho)
     frame_called(E, own, F, memory, R);
@@ -66,7 +67,7 @@ static void frames(size_t count, const void *F, void *R) {
     for (size_t l = 0; l < LANES; l++)
       for (size_t i = 0; i < 9; i++)
         LANE(e[i % 3 * 3 + i / 3], l) = from[9 * (n + (l < live ? l : live - 1)) + i];
-    FRAME_WORLD(&E, POLICY_PRECOMPUTED, 0, 1, rest, e, e, memory, Q, G, L);
+    FRAME_WORLD(&E, POLICY_PRECOMPUTED, 0, 1, 0, rest, e, e, memory, Q, G, L);
     for (size_t l = 0; l < live; l++)
       for (size_t i = 0; i < 9; i++) to[9 * (n + l) + i] = LANE(Q[i], l);
   }
@@ -84,7 +85,7 @@ INLINE void frame_pack(const struct cb_elements *E, int policy, int exact, int o
                        const T *e, const T *own, T *memory, T *R, T *P, T *y) {
   T F[9], stretch[9];
   (void)y;
-  frame_world(E, policy, exact, ortho, rest, e, own, memory, R, F, NULL);
+  frame_world(E, policy, exact, ortho, 0, rest, e, own, memory, R, F, NULL);
   corotated_stress(E->k, rest, ortho, R, F, stretch, P);
 }
 #endif
@@ -246,18 +247,18 @@ INLINE void call_any(const struct cb_elements *E, const T *rest, const T *e, con
 #endif
 
 /* Frame, gradients and force of one pack. Isotropic or frameless: w are world
- * gradients and R is not needed afterwards; orthotropic: w are local gradients. */
-INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
+ * gradients and R is not needed afterwards; orthotropic: w are local gradients. False:
+ * see quick_pack_fn. */
+INLINE bool corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho, int quick,
                            const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
                            T *R, T *w, T *f) {
   if (NO_FRAME || !ortho) {
     T F[9], L[3];
-    const bool done = FRAME_WORLD(E, policy, exact, ortho, rest, e, own, memory, R, F, L);
-    (void)done;
+    const bool done = FRAME_WORLD(E, policy, exact, ortho, quick, rest, e, own, memory, R, F, L);
 #ifdef ANY_PACK
-    if (exact && __builtin_expect(!done, 0)) {
+    if (exact && !quick && __builtin_expect(!done, 0)) {
       call_any(E, rest, e, own, ev, h, memory, R, w, f);
-      return;
+      return true;
     }
 #endif
     STAGE(STAGE_B);
@@ -268,7 +269,7 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
 #endif
     STAGE(STAGE_FORCE);
     world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
-    return;
+    return done;
   }
   T P[9], y[6], q[9], p[9];
   FRAME_PACK(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
@@ -280,6 +281,7 @@ INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, i
   absorb(rest, h, w, ev ? q : NULL, P);
   forces3(P, w, p);
   for (int j = 0; j < 9; j += 3) apply3(R, p + j, f + j);
+  return true;
 }
 
 typedef void corotated_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
@@ -294,6 +296,23 @@ INLINE void frameless_product(const T *rest, const T *u, T *f) {
 }
 
 /* ---- ebe: state w, or (orthotropic) R and, if it changes, b ----------------- */
+
+#ifdef LAZY /* remembers what it has made: once only */
+enum { QUICK = 0 };
+#else
+enum { QUICK = 1 };
+#endif
+
+/* The same, isotropic: quick_pack_fn. */
+INLINE bool corotated_quick(const struct cb_elements *E, int policy, int exact, const T *rest,
+                            const T *e, const T *own, const T *ev, T h, T *memory, T *state, T *f) {
+  T R[9], w[9];
+  const bool done =
+      corotated_pack(E, policy, exact, 0, QUICK, rest, e, own, ev, h, memory, R, w, f);
+  if (!NO_FRAME) /* whose rest gradients are the world gradients */
+    for (int i = 0; i < 9; i++) state[i] = w[i];
+  return done;
+}
 
 INLINE void corotated_ebe(const struct cb_elements *E, corotated_pack_fn *pack, int policy,
                           int ortho, const T *rest, const T *e, const T *own, const T *ev, T h,
@@ -393,31 +412,27 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 
 /* ---- one model: its storages, isotropic and orthotropic ---------------- */
 
-/* Isotropic elements in clusters are what is timed: their work is inlined. */
-#define CLUSTER_DRIVE_iso update_clusters
-#define CLUSTER_DRIVE_ortho drive_update_clusters
-
 /* Functions of model ID with the element functions bound to constants. */
 #define COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                             \
-  INLINE void ID##_whole_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
-                               const T *ev, T h, T *m, T *R, T *w, T *f) {                         \
-    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, R, w, f);                         \
-  }                                                                                                \
   PACK_LINKAGE void ID##_pack_##TAG(const struct cb_elements *E, const T *r, const T *e,           \
                                     const T *own, const T *ev, T h, T *m, T *R, T *w, T *f) {      \
-    ID##_whole_##TAG(E, r, e, own, ev, h, m, R, w, f);                                             \
+    corotated_pack(E, POLICY, EXACT, ORTHO, 0, r, e, own, ev, h, m, R, w, f);                      \
   }                                                                                                \
   INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,    \
                              const T *ev, T h, T *m, T *s, T *f) {                                 \
     corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, own, ev, h, m, s, f);                   \
   }                                                                                                \
-  INLINE void ID##_cluster_##TAG(const struct cb_elements *E, const T *r, const T *e,              \
-                                 const T *own, const T *ev, T h, T *m, T *s, T *f) {               \
-    corotated_ebe(E, ORTHO ? ID##_pack_##TAG : ID##_whole_##TAG, POLICY, ORTHO, r, e, own, ev, h,  \
-                  m, s, f);                                                                        \
+  INLINE bool ID##_quick_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
+                               const T *ev, T h, T *m, T *s, T *f) {                               \
+    return corotated_quick(E, POLICY, EXACT, r, e, own, ev, h, m, s, f);                           \
   }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
-  STORAGE_CLUSTER(ID, TAG, CLUSTER_DRIVE_##TAG, ID##_cluster_##TAG)
+  CLUSTER_UPDATE_##TAG(ID)
+
+/* Isotropic elements in clusters are what is timed: their work is inlined. */
+#define CLUSTER_UPDATE_iso(ID)                                                                     \
+  STORAGE_CLUSTER(ID, iso, update_clusters_quickly, ID##_quick_iso, ID##_ebe_iso)
+#define CLUSTER_UPDATE_ortho(ID) STORAGE_CLUSTER(ID, ortho, drive_update_clusters, ID##_ebe_ortho)
 
 #define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
   COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                                   \

@@ -23,10 +23,11 @@
 #define STORAGE_EBE(ID, TAG)                                                                       \
   UPDATE_FUNCTION(ID##_ebe_update_##TAG, drive_update(E, thread, x, v, h, out, ID##_ebe_##TAG))
 /* ... in clusters, whether the state or the positions are kept; DRIVE:
- * update_clusters, FN inlined, or drive_update_clusters, FN called; of the product:
+ * update_clusters_quickly or update_clusters, functions inlined, or
+ * drive_update_clusters, function called; of the product:
  * product_clusters_of_model or drive_product_clusters. */
-#define STORAGE_CLUSTER(ID, TAG, DRIVE, FN)                                                        \
-  UPDATE_FUNCTION(ID##_cluster_update_##TAG, DRIVE(E, thread, x, v, h, out, FN))
+#define STORAGE_CLUSTER(ID, TAG, DRIVE, ...)                                                       \
+  UPDATE_FUNCTION(ID##_cluster_update_##TAG, DRIVE(E, thread, x, v, h, out, __VA_ARGS__))
 #define STORAGE_CLUSTER_PRODUCT(ID, TAG, DRIVE)                                                    \
   PRODUCT_FUNCTION(ID##_cluster_run_##TAG, DRIVE(E, thread, u, y, ID##_ebe_product_##TAG))
 /* ... and its product, unless it is cb_product_gradients. */

@@ -65,16 +65,20 @@ INLINE void qr_stress(T k, int ortho, const T *rest, const T *U, T *P) {
  *   p32 = (S23 U33 - S33 U23) / U22
  *   p31 = (S13 U33 - S33 U13 - p32 U12) / U11
  *   p21 = (S12 U22 + S13 U23 - S22 U12 - S23 U13) / U11
- * Where an edge or a face collapses W has no limit and its gradient no bound: divided by
- * LEAST_EDGE at least, which leaves a ghost torque. Says where it is not bounded. */
-INLINE CHOICE qr_gradient(const T *U, T *P) {
-  const T least = LEAST_EDGE;
-  T first = LIT(1) / SELECT(U[0] > least, U[0], least);
-  T second = LIT(1) / SELECT(U[2] > least, U[2], least);
+ * in  first, second  1 / U11, 1 / U22 */
+INLINE void qr_turning(T first, T second, const T *U, T *P) {
   T s12 = P[1], s13 = P[2], s22 = P[4], s23 = P[5], s33 = P[8];
   P[7] = (s23 * U[5] - s33 * U[4]) * second;
   P[6] = (s13 * U[5] - s33 * U[3] - P[7] * U[1]) * first;
   P[3] = (s12 * U[2] + s13 * U[4] - s22 * U[1] - s23 * U[3]) * first;
+}
+
+/* The same, bounded: where an edge or a face collapses W has no limit and its gradient no
+ * bound: divided by LEAST_EDGE at least, which leaves a ghost torque. Says where it is not. */
+INLINE CHOICE qr_gradient(const T *U, T *P) {
+  const T least = LEAST_EDGE;
+  qr_turning(LIT(1) / SELECT(U[0] > least, U[0], least), LIT(1) / SELECT(U[2] > least, U[2], least),
+             U, P);
   return LESS(least, U[0]) & LESS(least, U[2]);
 }
 
@@ -123,24 +127,29 @@ INLINE void qr_pack(const struct cb_elements *E, int policy, int exact, int orth
   for (int i = 0; i < 9; i++) P[i] = P[i] + D[i];
 }
 
-INLINE bool qr_world(const struct cb_elements *E, int policy, int exact, int ortho, const T *rest,
-                     const T *e, const T *own, T *memory, T *R, T *F, T *L) {
+INLINE bool qr_world(const struct cb_elements *E, int policy, int exact, int ortho, int quick,
+                     const T *rest, const T *e, const T *own, T *memory, T *R, T *F, T *L) {
   T y[6], U[6], P[9];
   (void)memory;
   if (!exact) {
-    frame_qr_axes(own, R, y);
+    bool usual = true;
+    if (quick)
+      usual = ALL(frame_qr_usually(own, R, y));
+    else
+      frame_qr_axes(own, R, y);
     STAGE(STAGE_FORCE);
     if (policy != POLICY_PRECOMPUTED) qr_gradient_of_edges(E, policy, rest, e, F);
-    return true;
+    return usual;
   }
   CHOICE usual = frame_qr_usually(own, R, y);
   STAGE(STAGE_FORCE);
   qr_stretch(E, policy, rest, e, R, y, U);
-  if (!ALL(usual & LESS(LEAST_EDGE, U[0]) & LESS(LEAST_EDGE, U[2]))) return false;
+  usual = usual & LESS(LEAST_EDGE, U[0]) & LESS(LEAST_EDGE, U[2]);
+  if (!quick && !ALL(usual)) return false;
   qr_stress(E->k, ortho, rest, U, P);
-  qr_gradient(U, P);
+  qr_turning(LIT(1) / U[0], LIT(1) / U[2], U, P);
   L[0] = P[3] - P[1], L[1] = P[6] - P[2], L[2] = P[7] - P[5];
-  return true;
+  return ALL(usual);
 }
 
 #endif

@@ -116,9 +116,14 @@ INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *
   return made;
 }
 
-/* The i-th tetrahedron of a pack's clusters. */
-INLINE void update_slot(struct cb_elements *E, struct cluster_work *W, size_t i, bool moving, T h,
-                        update_pack_fn *update, bool keep_state) {
+/* One pack in a hurry: as update_pack_fn, but without a call for what is rare, which would
+ * cost the loop its registers. False where the pack is to be made again by that. */
+typedef bool quick_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
+                           const T *ev, T h, T *memory, T *state, T *f);
+
+/* The i-th tetrahedron of a pack's clusters; quick or, if that is NULL, update. */
+INLINE bool update_slot(struct cb_elements *E, struct cluster_work *W, size_t i, bool moving, T h,
+                        quick_pack_fn *quick, update_pack_fn *update, bool keep_state) {
   const size_t slot = W->pack->slot + i;
   const struct cb_corners *corners = E->packs->corners + W->shape->corners + i;
   const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
@@ -130,16 +135,29 @@ INLINE void update_slot(struct cb_elements *E, struct cluster_work *W, size_t i,
   if (order) own_edges(order, e, own);
   if (moving) local_edges(W->v, corners->vertex, ev);
   if (!keep_state) state[0] = rest[REST_W];
-  update(E, rest, e, order ? own : e, moving ? ev : NULL, h, E->memory + slot * E->memory_numbers,
-         keep_state ? state : lost, f);
+  const T *first = order ? own : e, *velocity = moving ? ev : NULL;
+  T *memory = E->memory + slot * E->memory_numbers, *to = keep_state ? state : lost;
+  bool done = true;
+  if (quick)
+    done = quick(E, rest, e, first, velocity, h, memory, to, f);
+  else
+    update(E, rest, e, first, velocity, h, memory, to, f);
   add_locally(W->f, corners, f);
+  return done;
 }
 
-/* Keeps REST_W in the state's place, and the positions, if there is room for them
+#define update_unit_again CB_NAME(cb_update_unit_again)
+/* All tetrahedra of W's pack once more, by update, in cluster.c. */
+void update_unit_again(struct cb_elements *E, struct cluster_work *W, bool moving, double h,
+                       update_pack_fn *update);
+
+/* By quick, and by update where that is not enough, or quick is NULL.
+ * Keeps REST_W in the state's place, and the positions, if there is room for them
  * (ebe-recompute). Inlined wherever it stands: with it the model's function, whose
  * numbers then stay in registers, which takes a third off the time. */
-INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
-                            S *out, update_pack_fn *update) {
+INLINE void update_clusters_quickly(struct cb_elements *E, size_t thread, const S *x, const S *v,
+                                    double h, S *out, quick_pack_fn *quick,
+                                    update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct cluster_work W;
   prepare_sums(W.f);
@@ -157,12 +175,19 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
       if (!E->rest) load_cluster(E->X, node, W.shape->nodes, W.X);
       load_cluster(x, node, W.shape->nodes, W.x);
       if (v) load_cluster(v, node, W.shape->nodes, W.v);
+      bool done = true;
       for (size_t i = 0; i < W.shape->tets; i++)
-        update_slot(E, &W, i, v != NULL, LIT(h), update, E->x == NULL);
+        done &= update_slot(E, &W, i, v != NULL, LIT(h), quick, update, E->x == NULL);
+      if (__builtin_expect(!done, 0)) update_unit_again(E, &W, v != NULL, h, update);
       add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
     }
     part_end(E, thread, part);
   }
+}
+
+INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
+                            S *out, update_pack_fn *update) {
+  update_clusters_quickly(E, thread, x, v, h, out, NULL, update);
 }
 
 /* ---- product ------------------------------------------------------------------- */
