@@ -222,12 +222,54 @@ static void exact_forces_do_not_turn_what_collapsed(void **state) {
                 worst);
 }
 
+/* ---- neighbours ----------------------------------------------------------------------- */
+
+/* f := 0 for the nodes of elements that have that node. */
+static void keep_apart(const struct cb_mesh *mesh, uint32_t node, quad *f) {
+  for (size_t e = 0; e < mesh->tets; e++) {
+    const uint32_t *t = mesh->tet + 4 * e;
+    if (t[0] != node && t[1] != node && t[2] != node && t[3] != node) continue;
+    for (int i = 0; i < 12; i++) f[3 * t[i / 3] + i % 3] = 0;
+  }
+}
+
+/* Lanes and clusters make whole packs again where one element has collapsed: what the
+ * others of the pack push is what they push elsewhere. */
+static void neighbours_of_what_collapsed_push_as_ever(void **state) {
+  (void)state;
+  gsl_rng *rng = scene_rng();
+  struct scene s = {.condition = 1};
+  assert_int_equal(cb_mesh_grid(3, 2, 2, 0.5, &s.mesh), CB_OK);
+  scene_complete(rng, &s);
+  const uint32_t moved = s.mesh.tet[0], onto = s.mesh.tet[1];
+  for (int i = 0; i < 3; i++) s.x[3 * moved + (size_t)i] = s.x[3 * onto + (size_t)i];
+  const size_t n = 3 * s.mesh.nodes;
+  quad *f = quads_new(2 * n), *exact = f + n;
+  const struct cb_material m = scene_material(false);
+  for (const struct cb_variant *v = cb_variants(NULL); v->model; v++) {
+    if (!is_tested(v, false) || strncmp(v->model->name, "qr-", 3) != 0) continue;
+    const struct cb_arithmetic *counted = scene_counted();
+    const struct cb_variant whole = {scene_model(counted, v->model->name), CB_EBE, counted};
+    char name[96];
+    cb_variant_name(v, name);
+    force_at(&whole, &s, &m, exact);
+    force_at(v, &s, &m, f);
+    keep_apart(&s.mesh, moved, exact);
+    keep_apart(&s.mesh, moved, f);
+    assert_rounding(name, n, f, exact, v->arithmetic->roundoff, s.condition, 16);
+  }
+  free(f);
+  scene_free(&s);
+  gsl_rng_free(rng);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(collapsed_elements_push_within_bounds),
       cmocka_unit_test(sizes_are_finite),
       cmocka_unit_test(exact_forces_are_continuous_when_flat),
       cmocka_unit_test(exact_forces_do_not_turn_what_collapsed),
+      cmocka_unit_test(neighbours_of_what_collapsed_push_as_ever),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
