@@ -119,11 +119,16 @@ INLINE void frame_qr(const T *e, T *R, T *y) {
   apply3_transposed(R, e + 6, y + 3);
 }
 
-/* That where it is usual: says where. */
-INLINE CHOICE frame_qr_usually(const T *e, T *R, T *y) {
+/* Both where they are usual: say where. */
+INLINE CHOICE frame_qr_axes_usually(const T *e, T *R, T *y) {
   T q[9];
   CHOICE usual = qr_axes(e, q, y);
   qr_complete(q, R);
+  return usual;
+}
+
+INLINE CHOICE frame_qr_usually(const T *e, T *R, T *y) {
+  CHOICE usual = frame_qr_axes_usually(e, R, y);
   apply3_transposed(R, e + 6, y + 3);
   return usual;
 }

@@ -134,7 +134,7 @@ INLINE bool qr_world(const struct cb_elements *E, int policy, int exact, int ort
   if (!exact) {
     bool usual = true;
     if (quick)
-      usual = ALL(frame_qr_usually(own, R, y));
+      usual = ALL(frame_qr_axes_usually(own, R, y));
     else
       frame_qr_axes(own, R, y);
     STAGE(STAGE_FORCE);
