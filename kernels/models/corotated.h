@@ -412,6 +412,16 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
 
 /* ---- one model: its storages, isotropic and orthotropic ---------------- */
 
+/* Isotropic elements in clusters are what is timed: their work is inlined. */
+#define CLUSTER_UPDATE_iso(ID, POLICY, EXACT)                                                      \
+  INLINE bool ID##_quick(const struct cb_elements *E, const T *r, const T *e, const T *own,        \
+                         const T *ev, T h, T *m, T *s, T *f) {                                     \
+    return corotated_quick(E, POLICY, EXACT, r, e, own, ev, h, m, s, f);                           \
+  }                                                                                                \
+  STORAGE_CLUSTER(ID, iso, update_clusters_quickly, ID##_quick, ID##_ebe_iso)
+#define CLUSTER_UPDATE_ortho(ID, POLICY, EXACT)                                                    \
+  STORAGE_CLUSTER(ID, ortho, drive_update_clusters, ID##_ebe_ortho)
+
 /* Functions of model ID with the element functions bound to constants. */
 #define COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                             \
   PACK_LINKAGE void ID##_pack_##TAG(const struct cb_elements *E, const T *r, const T *e,           \
@@ -422,17 +432,8 @@ INLINE void corotated_paper_product(const struct cb_elements *E, int policy, int
                              const T *ev, T h, T *m, T *s, T *f) {                                 \
     corotated_ebe(E, ID##_pack_##TAG, POLICY, ORTHO, r, e, own, ev, h, m, s, f);                   \
   }                                                                                                \
-  INLINE bool ID##_quick_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,  \
-                               const T *ev, T h, T *m, T *s, T *f) {                               \
-    return corotated_quick(E, POLICY, EXACT, r, e, own, ev, h, m, s, f);                           \
-  }                                                                                                \
   STORAGE_EBE(ID, TAG)                                                                             \
-  CLUSTER_UPDATE_##TAG(ID)
-
-/* Isotropic elements in clusters are what is timed: their work is inlined. */
-#define CLUSTER_UPDATE_iso(ID)                                                                     \
-  STORAGE_CLUSTER(ID, iso, update_clusters_quickly, ID##_quick_iso, ID##_ebe_iso)
-#define CLUSTER_UPDATE_ortho(ID) STORAGE_CLUSTER(ID, ortho, drive_update_clusters, ID##_ebe_ortho)
+  CLUSTER_UPDATE_##TAG(ID, POLICY, EXACT)
 
 #define COROTATED_FORM(ID, POLICY, EXACT, ORTHO, TAG)                                              \
   COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                                   \
