@@ -17,7 +17,9 @@
 
 /* Of two limits, the one of this precision. */
 #define BY_PRECISION(in_float, in_double) LIT(sizeof(S) == sizeof(float) ? (in_float) : (in_double))
-/* The square of a length by the longest, below which it is rounding: 16 of them. */
+/* Below this, by the largest of what was added, a sum is rounding: 16 of them. */
+#define LOST BY_PRECISION(0x1p-20, 0x1p-49)
+/* The square of a length by the longest, below which it is the same. */
 #define LEAST_SQUARE BY_PRECISION(0x1p-40, 0x1p-98)
 
 /* low < a < high; false of what is not a number. */
@@ -99,7 +101,7 @@ RARE void orthogonal_of_any(const T *F, bool reflects, T *Q) {
   scale_to_one(3, v);
   normalise_across(u, v);
   cross3(u, v, w);
-  MASK left = dot3(w, third) < BY_PRECISION(-0x1p-20, -0x1p-49); /* and not by rounding */
+  MASK left = dot3(w, third) < -LOST; /* and not by rounding */
   const T sign = SELECT(left, LIT(reflects ? -1 : 1), LIT(1));
   for (int i = 0; i < 3; i++) U[3 * i] = u[i], U[3 * i + 1] = v[i], U[3 * i + 2] = sign * w[i];
   multiply3_nt(U, V, Q);

@@ -28,7 +28,6 @@
  * the turning is bounded: the sum is taken to be as large, or as what rounding may have
  * left of it. */
 #define LEAST_TURN LIT(1e-3)
-#define LOST BY_PRECISION(0x1p-20, 0x1p-49)
 
 static const uint8_t voigt_row[6] = {0, 1, 2, 0, 1, 2}, voigt_column[6] = {0, 1, 2, 1, 2, 0};
 

@@ -91,7 +91,7 @@ RARE void balance_of_any(const T *stretch, const T *P, T *D) {
   scale_to_one(6, U);
   const T rows[9] = {U[0], U[1], U[3], LIT(0), U[2], U[4], LIT(0), LIT(0), U[5]};
   multiply3_nt(rows, rows, C);
-  const T more = (C[0] + C[4] + C[8]) * BY_PRECISION(0x1p-20, 0x1p-49);
+  const T more = LOST * (C[0] + C[4] + C[8]);
   for (int i = 0; i < 9; i++) G[i] = -C[i], sum[i] = P[i];
   G[0] = C[4] + C[8] + more, G[4] = C[0] + C[8] + more, G[8] = C[0] + C[4] + more;
   cofactor3(G, inner);
