@@ -306,7 +306,7 @@ enum { QUICK = 0 };
 enum { QUICK = 1 };
 #endif
 
-/* The same, isotropic: quick_pack_fn. */
+/* One isotropic pack of a cluster: quick_pack_fn. */
 INLINE bool corotated_quick(const struct cb_elements *E, int policy, int exact, const T *rest,
                             const T *e, const T *own, const T *ev, T h, T *memory, T *state, T *f) {
   T R[9], w[9];

@@ -147,7 +147,8 @@ INLINE bool update_slot(struct cb_elements *E, struct cluster_work *W, size_t i,
 }
 
 #define update_unit_again CB_NAME(cb_update_unit_again)
-/* All tetrahedra of W's pack once more, by update, in cluster.c. */
+/* All tetrahedra of W's pack once more, by update: W->f, state and memory are overwritten;
+ * h, s. In cluster.c. */
 void update_unit_again(struct cb_elements *E, struct cluster_work *W, bool moving, double h,
                        update_pack_fn *update);
 
