@@ -68,6 +68,7 @@ struct cb_elements {
   T *state;             /* [slots][state_numbers] */
   size_t rest_numbers, memory_numbers, state_numbers;
   size_t bytes;                    /* of every array here but X and x */
+  size_t kept_bytes;               /* of rest, memory and state */
   T k;                             /* lambda/mu = 2 nu/(1 - 2 nu) */
   T root, inverse_root, inverse_c; /* of c mu share / 6; of c: for rest data made of X */
   size_t frame_iterations;         /* struct cb_tuning */
@@ -83,6 +84,11 @@ struct cb_elements {
   S *node_frame; /* [nodes][9] */
   S *node_sum;   /* [nodes][9] */
 };
+
+/* From so many bytes that are kept on, which is beyond a core's second cache and its share of
+ * the third, updates and products ask for them ahead of time: it takes 4 % of the time where
+ * they are near, and 20 % off where they are not. */
+enum { UPDATE_FETCHES = 2000000, PRODUCT_FETCHES = 8000000 };
 
 /* Are gradients and edges in the vertices' own order? */
 INLINE bool in_own_order(const struct cb_elements *E) { return !E->packs->order; }

@@ -37,19 +37,26 @@ INLINE void by_positions(const struct cb_elements *E, size_t slot, product_pack_
   gradients_product(E->k, w, du, f);
 }
 
+/* Twice: a question in every slot would take 3 % of a product that all is near for. */
 void CB_NAME(cb_product_cluster_gradients)(const struct cb_elements *E, size_t thread,
                                            const void *u, void *y) {
-  product_clusters(E, thread, u, y, by_gradients, false, NULL);
+  if (E->kept_bytes < PRODUCT_FETCHES)
+    product_clusters(E, thread, u, y, by_gradients, false, NULL, 0, NULL);
+  else
+    product_clusters(E, thread, u, y, by_gradients, false, E->state, 9, NULL);
 }
 
 void CB_NAME(cb_product_cluster_rest)(const struct cb_elements *E, size_t thread, const void *u,
                                       void *y) {
-  product_clusters(E, thread, u, y, by_rest, false, NULL);
+  if (E->kept_bytes < PRODUCT_FETCHES)
+    product_clusters(E, thread, u, y, by_rest, false, NULL, 0, NULL);
+  else
+    product_clusters(E, thread, u, y, by_rest, false, E->rest, E->rest_numbers, NULL);
 }
 
 void CB_NAME(cb_product_recompute)(const struct cb_elements *E, size_t thread, const void *u,
                                    void *y) {
-  product_clusters(E, thread, u, y, by_positions, true, NULL);
+  product_clusters(E, thread, u, y, by_positions, true, NULL, 0, NULL);
 }
 
 void drive_product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,

@@ -129,6 +129,7 @@ INLINE bool update_slot(struct cb_elements *E, struct cluster_work *W, size_t i,
   const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
   T made[REST_ISOTROPIC], e[9], own[9], ev[9], f[9], lost[18];
   T *state = E->state + slot * E->state_numbers;
+  fetch_for_update(E, slot);
   const T *rest = rest_of_slot(E, slot, W->X, corners->vertex, order, made);
   STAGE(STAGE_FRAME);
   local_edges(W->x, corners->vertex, e);
@@ -194,12 +195,13 @@ INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, co
 /* ---- product ------------------------------------------------------------------- */
 
 /* One slot of a product, for edges du[9] and, if it is read, edges e[9] of the last
- * update's positions: f[9] := share on b, c, d. */
+ * update's positions: f[9] := share on b, c, d. Its `numbers` from `ahead` on are fetched. */
 typedef void slot_product_fn(const struct cb_elements *E, size_t slot, product_pack_fn *model,
                              const T *e, const T *du, T *f);
 
 INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S *u, S *y,
-                             slot_product_fn *product, bool positions, product_pack_fn *model) {
+                             slot_product_fn *product, bool positions, const T *ahead,
+                             size_t numbers, product_pack_fn *model) {
   const struct cb_packs *P = E->packs;
   struct {
     T u[LOADED], x[LOADED], gap[PAGE / 2], sum[SUM_NUMBERS];
@@ -217,6 +219,7 @@ INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S
         const struct cb_corners *corners = P->corners + shape->corners + i;
         T e[9], du[9], f[9];
         STAGE(STAGE_PRODUCT);
+        if (numbers) fetch(ahead + (pack->slot + i + AHEAD) * numbers, numbers);
         if (positions) local_edges(W.x, corners->vertex, e);
         local_edges(W.u, corners->vertex, du);
         product(E, pack->slot + i, model, e, du, f);
@@ -231,13 +234,14 @@ INLINE void product_clusters(const struct cb_elements *E, size_t thread, const S
 INLINE void by_model(const struct cb_elements *E, size_t slot, product_pack_fn *model, const T *e,
                      const T *du, T *f) {
   (void)e;
+  fetch_for_product(E, slot);
   model(E, E->rest + slot * E->rest_numbers, E->state + slot * E->state_numbers, du, f);
 }
 
 /* Inlined wherever it stands, like update_clusters. */
 INLINE void product_clusters_of_model(const struct cb_elements *E, size_t thread, const S *u, S *y,
                                       product_pack_fn *product) {
-  product_clusters(E, thread, u, y, by_model, false, product);
+  product_clusters(E, thread, u, y, by_model, false, NULL, 0, product);
 }
 
 #define drive_update_clusters CB_NAME(cb_drive_update_clusters)

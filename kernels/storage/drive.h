@@ -56,6 +56,28 @@ INLINE size_t live_lanes(const struct range *r, size_t pack) {
   return pack == r->tail ? r->tail_live : LANES;
 }
 
+/* ---- what is needed in a while ---------------------------------------------- */
+
+/* Slots ahead. The processor sees such streams too, but begins anew at each page. */
+enum { AHEAD = 2 };
+
+INLINE void fetch(const T *numbers, size_t count) {
+  for (size_t i = 0; LANES > 1 && i < count; i += 64 / sizeof(T)) __builtin_prefetch(numbers + i);
+}
+
+/* What an update soon comes to, and a product; asked for only where that pays
+ * (struct cb_elements). */
+INLINE void fetch_all(const struct cb_elements *E, size_t slot) {
+  fetch(E->state + (slot + AHEAD) * E->state_numbers, E->state_numbers);
+  if (E->rest) fetch(E->rest + (slot + AHEAD) * E->rest_numbers, E->rest_numbers);
+}
+INLINE void fetch_for_update(const struct cb_elements *E, size_t slot) {
+  if (E->kept_bytes >= UPDATE_FETCHES) fetch_all(E, slot);
+}
+INLINE void fetch_for_product(const struct cb_elements *E, size_t slot) {
+  if (E->kept_bytes >= PRODUCT_FETCHES) fetch_all(E, slot);
+}
+
 /* ---- gather and scatter ----------------------------------------------------- */
 
 /* e[9] := differences of the node vector x along b-a, c-a, d-a. */
@@ -100,6 +122,7 @@ INLINE void product_loop(const struct cb_elements *E, size_t thread, const S *u,
       const uint32_t *tet = E->packs->node + p * 4 * LANES;
       T du[9], f[9];
       STAGE(STAGE_PRODUCT);
+      fetch_for_product(E, p);
       gather_edges(u, tet, du);
       product(E, E->rest + p * E->rest_numbers, E->state + p * E->state_numbers, du, f);
       scatter_edges(y, tet, live_lanes(&r, p), f);
@@ -132,6 +155,7 @@ DRIVER void drive_update(struct cb_elements *E, size_t thread, const S *x, const
     for (size_t p = r.first; p < r.last; p++) {
       const uint32_t *tet = E->packs->node + p * 4 * LANES;
       T made[REST_ISOTROPIC], e[9], ev[9], f[9];
+      fetch_for_update(E, p);
       const T *rest = rest_of(E, tet, p, made);
       STAGE(STAGE_FRAME);
       gather_edges(x, tet, e);

@@ -311,21 +311,13 @@ static void constants(const struct layout *L, const struct cb_mesh *mesh, struct
   E->inverse_c = splat((S)(1 / L->c));
 }
 
-/* Clusters are joined while what is kept of the elements stays in a cache: the step was
- * 6 to 11 % faster at 7 MB, and 3 to 20 % slower at 12 to 80, where numbers come from
- * further away and do not come while a large unit's nodes are gathered and scattered. */
-static const double JOINED_BYTES = 8e6;
-
-static bool are_joined(const struct cb_elements *E, bool keeps_rest) {
-  const size_t numbers = E->state_numbers + E->memory_numbers + (keeps_rest ? E->rest_numbers : 0);
-  return LANES > 1 && (double)(numbers * sizeof(S)) * (double)E->tets <= JOINED_BYTES;
-}
-
 /* Which nodes, in which packs. */
 static enum cb_status pack(const struct cb_variant *v, const struct cb_mesh *mesh, size_t threads,
-                           bool keeps_rest, struct cb_elements *E) {
+                           struct cb_elements *E) {
   const bool clustered = v->storage == CB_EBE_CLUSTER || v->storage == CB_EBE_RECOMPUTE;
-  const bool joined = are_joined(E, keeps_rest);
+  /* While what is kept is near: the step was 6 to 11 % faster at 7 MB, and 3 to 20 % slower at
+   * 12 to 80, as numbers do not come while a large unit's nodes are gathered and scattered. */
+  const bool joined = LANES > 1 && E->kept_bytes < PRODUCT_FETCHES;
   enum cb_status status = cb_packs_create(mesh, LANES, threads, clustered, joined, &E->packs);
   if (status) return status;
   if (E->axes == AXES_WORLD) cb_packs_disorder(E->packs);
@@ -357,10 +349,12 @@ enum cb_status CB_NAME(cb_elements_create)(const struct cb_variant *v, const str
    * made again. Single elements in lanes are as lean as can be. */
   const bool keeps_rest = LANES == 1 || v->storage == CB_EBE_CLUSTER || v->model->keeps_rest ||
                           L.orthotropic || E->axes == AXES_POLAR;
+  E->kept_bytes = (E->state_numbers + E->memory_numbers + (keeps_rest ? E->rest_numbers : 0)) *
+                  sizeof(S) * E->tets;
   enum cb_status status = CB_OK;
   if (E->axes == AXES_POLAR) status = upright(given, &turned);
   if (turned) mesh.tet = turned;
-  if (!status) status = pack(v, &mesh, cb_team_threads(team), keeps_rest, E);
+  if (!status) status = pack(v, &mesh, cb_team_threads(team), E);
   if (!status) status = allocate(v, &mesh, keeps_rest, E);
   if (!status && !keeps_rest) status = rest_positions(&mesh, E);
   if (!status && keeps_rest) fill_rest(&L, &mesh, E);
