@@ -67,7 +67,7 @@ static void whole_part(void *context, size_t thread) {
   size_t first, last;
   cb_team_share(w->op->nodes, cb_team_threads(w->op->team), thread, &first, &last);
   memset((char *)w->out + first * w->op->node_bytes, 0, (last - first) * w->op->node_bytes);
-  cb_team_barrier(w->op->team);
+  cb_team_barrier(w->op->team, thread);
   if (w->update)
     cb_operator_update_part(w->update, thread, w->x, w->v, w->h, w->out);
   else

@@ -1,5 +1,7 @@
 /* team.c - see team.h. The barriers are ours and not OpenMP's: they cost a tenth of
- * a microsecond, and the thread sanitizer can see them.
+ * a microsecond, and the thread sanitizer can see them. A thread writes how many it has
+ * reached, and what it tells, to a cache line of its own, and waits for those of the others:
+ * one line has to come from another core, and no line has two writers.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/team.h"
@@ -8,6 +10,7 @@
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "kernels/spin.h"
 
@@ -15,8 +18,10 @@ struct cb_team {
   size_t threads;
   cb_team_work *work;
   void *context;
-  _Alignas(64) atomic_size_t waiting;
-  _Alignas(64) atomic_size_t turn; /* barriers passed */
+  struct member {
+    _Alignas(64) atomic_size_t turn;          /* barriers reached */
+    _Alignas(16) char told[2][CB_TEAM_WORDS]; /* in every second: some may still read the last */
+  } member[];
 };
 
 /* The caller's processors before the first team of several threads, and how many
@@ -37,17 +42,23 @@ static void pin(size_t thread) {
   sched_setaffinity(0, sizeof own, &own); /* refused: slower, not wrong */
 }
 
-void cb_team_barrier(struct cb_team *team) {
-  if (team->threads == 1) return;
-  const size_t turn = atomic_load_explicit(&team->turn, memory_order_relaxed);
-  if (atomic_fetch_add_explicit(&team->waiting, 1, memory_order_acq_rel) + 1 == team->threads) {
-    atomic_store_explicit(&team->waiting, 0, memory_order_relaxed);
-    atomic_store_explicit(&team->turn, turn + 1, memory_order_release);
-    return;
-  }
-  for (size_t spins = 0; atomic_load_explicit(&team->turn, memory_order_acquire) == turn; spins++)
-    cb_spin(spins);
+void cb_team_tell(struct cb_team *team, size_t thread, const void *words, size_t bytes) {
+  struct member *own = &team->member[thread];
+  const size_t turn = atomic_load_explicit(&own->turn, memory_order_relaxed) + 1;
+  if (bytes) memcpy(own->told[turn % 2], words, bytes);
+  atomic_store_explicit(&own->turn, turn, memory_order_release);
+  for (size_t t = 0; t < team->threads; t++)
+    for (size_t n = 0; atomic_load_explicit(&team->member[t].turn, memory_order_acquire) < turn;
+         n++)
+      cb_spin(n);
 }
+
+const void *cb_team_told(const struct cb_team *team, size_t thread, size_t other) {
+  const size_t turn = atomic_load_explicit(&team->member[thread].turn, memory_order_relaxed);
+  return team->member[other].told[turn % 2];
+}
+
+void cb_team_barrier(struct cb_team *team, size_t thread) { cb_team_tell(team, thread, NULL, 0); }
 
 /* Threads of OpenMP come and go with the size of its teams: each pins itself once. */
 static void take_part(void) {
@@ -91,9 +102,11 @@ static size_t available(size_t threads) {
 
 enum cb_status cb_team_create(size_t threads, struct cb_team **out) {
   if (threads < 1 || threads > CB_TEAM_MOST) return CB_INPUT;
-  struct cb_team *team = aligned_alloc(64, (sizeof *team + 63) / 64 * 64);
+  const size_t bytes = sizeof(struct cb_team) + threads * sizeof(struct member);
+  struct cb_team *team = aligned_alloc(64, bytes);
   if (!team) return CB_MEMORY;
-  *team = (struct cb_team){.threads = threads};
+  memset(team, 0, bytes);
+  team->threads = threads;
   if (threads > 1) {
     omp_set_dynamic(0);
     if (available(threads) != threads) {

@@ -23,7 +23,12 @@ size_t cb_team_threads(const struct cb_team *team);
  * called by two threads at once. What the caller wrote before is seen by all. */
 void cb_team_run(struct cb_team *team, cb_team_work *work, void *context);
 /* Within work: wait for all threads of the team. */
-void cb_team_barrier(struct cb_team *team);
+void cb_team_barrier(struct cb_team *team, size_t thread);
+/* The same, and everybody gets to know bytes <= CB_TEAM_WORDS of the thread; told: those of
+ * `other`, until the thread waits again. */
+enum { CB_TEAM_WORDS = 16 };
+void cb_team_tell(struct cb_team *team, size_t thread, const void *words, size_t bytes);
+const void *cb_team_told(const struct cb_team *team, size_t thread, size_t other);
 
 /* Thread's share [first, last) of n things. */
 static inline void cb_team_share(size_t n, size_t threads, size_t thread, size_t *first,

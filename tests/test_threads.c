@@ -37,10 +37,10 @@ static void run_relay(void *context, size_t thread) {
   struct relay *r = context;
   for (size_t n = 1; n <= 200; n++) {
     r->round[thread] = n;
-    cb_team_barrier(r->team);
+    cb_team_barrier(r->team, thread);
     for (size_t t = 0; t < r->threads; t++)
       if (r->round[t] != n) r->ahead = true;
-    cb_team_barrier(r->team);
+    cb_team_barrier(r->team, thread);
   }
 }
 

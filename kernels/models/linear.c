@@ -13,7 +13,7 @@ COROTATED_FORM(linear, POLICY_PRECOMPUTED, 0, 1, ortho)
 COROTATED_PRODUCT(linear, POLICY_PRECOMPUTED, ortho)
 
 static void assembled(struct cb_elements *E, size_t thread) {
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
   if (thread == 0) E->assembled = true;
 }
 

@@ -19,7 +19,7 @@ INLINE void sum_node_gradients(struct cb_elements *E, size_t thread, const S *x)
   size_t first, last;
   cb_team_share(9 * E->nodes, E->packs->threads, thread, &first, &last);
   for (size_t i = first; i < last; i++) E->node_sum[i] = (S)0;
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
   for (int part = 0; part < 3; part++) {
     const struct range r = part_begin(E, thread, part);
     for (size_t p = r.first; p < r.last; p++) {
@@ -39,7 +39,7 @@ INLINE void sum_node_gradients(struct cb_elements *E, size_t thread, const S *x)
     }
     part_end(E, thread, part);
   }
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
 }
 
 /* A node of no element keeps whatever comes out: nobody reads it. */
@@ -58,7 +58,7 @@ INLINE void turn_nodes(struct cb_elements *E, size_t thread) {
     for (size_t l = 0; l < live; l++)
       for (int i = 0; i < 9; i++) E->node_frame[9 * (n + l) + (size_t)i] = LANE(R[i], l);
   }
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
 }
 
 /* f[12] := for each vertex i, R_i (scale D : (sym(R_i^T F) - I)

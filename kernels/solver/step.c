@@ -20,7 +20,6 @@
 static void free_stepper(struct cb_stepper *s) {
   for (int i = 0; i < STEPPER_VECTORS; i++) free(s->vector[i]);
   free(s->fixed);
-  free(s->partial);
   free(s);
 }
 
@@ -45,13 +44,11 @@ static enum cb_status create(struct cb_operator *op, const struct cb_step_parame
   }
   for (size_t n = 0; fixed && n < nodes; n++) s->fixed_count += fixed[n] != 0;
   s->fixed = malloc(s->fixed_count * sizeof *s->fixed + 1);
-  s->partial = aligned_alloc(64, s->threads * sizeof *s->partial);
-  if (!there || !s->fixed || !s->partial) {
+  if (!there || !s->fixed) {
     free_stepper(s);
     return CB_MEMORY;
   }
-  s->bytes =
-      STEPPER_VECTORS * bytes + s->fixed_count * sizeof *s->fixed + s->threads * sizeof *s->partial;
+  s->bytes = STEPPER_VECTORS * bytes + s->fixed_count * sizeof *s->fixed;
   for (size_t n = 0, i = 0; i < s->fixed_count; n++)
     if (fixed[n]) s->fixed[i++] = (uint32_t)n;
   fill_mass(s, mass);
@@ -77,14 +74,13 @@ static void filter(const struct cb_stepper *s, struct share scalars, S *v) {
   }
 }
 
-/* The sum over all threads, the same on each; which: two sums must not follow each
- * other in the same place. */
-static ACC reduce(const struct cb_stepper *s, size_t thread, int which, const struct sum *own) {
+/* The sum over all threads, the same on each. */
+static ACC reduce(const struct cb_stepper *s, size_t thread, const struct sum *own) {
+  struct cb_team *team = cb_operator_team(s->op);
   ACC part = sum_total(own), total = 0;
-  memcpy(s->partial[thread].sum[which], &part, sizeof part);
-  cb_team_barrier(cb_operator_team(s->op));
+  cb_team_tell(team, thread, &part, sizeof part);
   for (size_t t = 0; t < s->threads; t++) {
-    memcpy(&part, s->partial[t].sum[which], sizeof part);
+    memcpy(&part, cb_team_told(team, thread, t), sizeof part);
     total += part;
   }
   return total;
@@ -103,71 +99,80 @@ static void right_side(struct cb_stepper *s, size_t thread, const void *x, const
     for (size_t i = own.first; i < own.last; i++) b[i] = h * f[i];
   if (drag != 0)
     for (size_t i = own.first; i < own.last; i++) b[i] -= drag * m[i] * v[i];
-  cb_team_barrier(cb_operator_team(s->op));
+  cb_team_barrier(cb_operator_team(s->op), thread);
   cb_operator_update_part(s->op, thread, x, velocity, s->parameters.h, b);
-  cb_team_barrier(cb_operator_team(s->op));
+  cb_team_barrier(cb_operator_team(s->op), thread);
   filter(s, own, b);
 }
 
-/* dv := 0, r, p := b, y := M p; returns r . r. */
-static ACC start(const struct cb_stepper *s, size_t thread, struct share own) {
-  const T *restrict b = s->vector[STEPPER_B], *restrict m = s->vector[STEPPER_MASS];
-  T *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
-  T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+/* Residual and direction are b itself until the first step: no vector is copied, as beyond
+ * the caches it is their traffic that takes the time. */
+
+/* y := M b; returns b . b. */
+static ACC start(const struct cb_stepper *s, size_t thread, struct share own, const T *b) {
+  const T *restrict m = s->vector[STEPPER_MASS];
+  T *restrict y = s->vector[STEPPER_Y];
   struct sum sum = {0};
   for (size_t i = own.first; i < own.last; i += BLOCK_TS)
     for (size_t n = 0; n < BLOCK_TS; n++) {
       const T value = b[i + n];
-      dv[i + n] = LIT(0);
-      r[i + n] = p[i + n] = value;
       y[i + n] = m[i + n] * value;
       sum_product(&sum, n, value, value);
     }
-  return reduce(s, thread, 1, &sum);
+  return reduce(s, thread, &sum);
 }
 
 /* Returns p . y. */
-static ACC curvature(const struct cb_stepper *s, size_t thread, struct share own) {
-  const T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+static ACC curvature(const struct cb_stepper *s, size_t thread, struct share own, const T *p) {
+  const T *y = s->vector[STEPPER_Y];
   struct sum sum = {0};
   for (size_t i = own.first; i < own.last; i += BLOCK_TS)
     for (size_t n = 0; n < BLOCK_TS; n++) sum_product(&sum, n, p[i + n], y[i + n]);
-  return reduce(s, thread, 0, &sum);
+  return reduce(s, thread, &sum);
 }
 
-/* dv += alpha p, r -= alpha y; returns r . r. */
-static ACC descend(const struct cb_stepper *s, size_t thread, struct share own, T alpha) {
-  const T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
-  T *restrict dv = s->vector[STEPPER_DV], *restrict r = s->vector[STEPPER_R];
+/* r := last - alpha y; returns r . r. */
+static ACC descend(const struct cb_stepper *s, size_t thread, struct share own, const T *last,
+                   T alpha) {
+  const T *restrict y = s->vector[STEPPER_Y];
+  T *r = s->vector[STEPPER_R];
   struct sum sum = {0};
   for (size_t i = own.first; i < own.last; i += BLOCK_TS)
     for (size_t n = 0; n < BLOCK_TS; n++) {
-      const T left = r[i + n] - alpha * y[i + n];
-      dv[i + n] = dv[i + n] + alpha * p[i + n];
+      const T left = last[i + n] - alpha * y[i + n];
       r[i + n] = left;
       sum_product(&sum, n, left, left);
     }
-  return reduce(s, thread, 1, &sum);
+  return reduce(s, thread, &sum);
 }
 
-/* p := r + beta p, y := M p. */
-static void turn(const struct cb_stepper *s, struct share own, T beta) {
+/* dv := alpha p, if that is the first step, or dv + alpha p. */
+static void move(const struct cb_stepper *s, struct share own, const T *p, T alpha, bool first) {
+  T *restrict dv = s->vector[STEPPER_DV];
+  for (size_t i = own.first; i < own.last; i++) dv[i] = first ? alpha * p[i] : dv[i] + alpha * p[i];
+}
+
+/* dv as above; p := r + beta last, y := M p. */
+static void turn(const struct cb_stepper *s, struct share own, const T *last, T alpha, T beta,
+                 bool first) {
   const T *restrict r = s->vector[STEPPER_R], *restrict m = s->vector[STEPPER_MASS];
-  T *restrict p = s->vector[STEPPER_P], *restrict y = s->vector[STEPPER_Y];
+  T *restrict dv = s->vector[STEPPER_DV], *restrict y = s->vector[STEPPER_Y];
+  T *p = s->vector[STEPPER_P];
   for (size_t i = own.first; i < own.last; i++) {
-    const T next = r[i] + beta * p[i];
+    const T before = last[i], next = r[i] + beta * before;
+    dv[i] = first ? alpha * before : dv[i] + alpha * before;
     p[i] = next;
     y[i] = m[i] * next;
   }
 }
 
 /* p . M p, where M is all that is left of the operator. */
-static ACC inertia(const struct cb_stepper *s, size_t thread, struct share own) {
-  const T *restrict p = s->vector[STEPPER_P], *restrict m = s->vector[STEPPER_MASS];
+static ACC inertia(const struct cb_stepper *s, size_t thread, struct share own, const T *p) {
+  const T *m = s->vector[STEPPER_MASS];
   struct sum sum = {0};
   for (size_t i = own.first; i < own.last; i += BLOCK_TS)
     for (size_t n = 0; n < BLOCK_TS; n++) sum_product(&sum, n, p[i + n], m[i + n] * p[i + n]);
-  return reduce(s, thread, 1, &sum);
+  return reduce(s, thread, &sum);
 }
 
 /* Bounds of |p| and |dv| by the triangle inequality, kept beside the vectors: what would
@@ -212,72 +217,82 @@ static bool within(const struct bounds *b, double step) {
   return b->p <= most && fabs(step) <= most && dv <= most && dv <= most * b->scale; /* NaN: no */
 }
 
-/* A step from dv = 0 where b . A b <= 0: downhill, and no farther than the size of the
+/* A step from dv = 0 along p where p . A p <= 0: downhill, and no farther than the size of the
  * curvature or the mass alone would allow. */
 static bool descend_without_curvature(const struct cb_stepper *s, size_t thread, struct share own,
-                                      const struct bounds *b, ACC rr, ACC py) {
-  const double mass = (double)inertia(s, thread, own), step = (double)rr / fmax(mass, -(double)py);
+                                      const T *p, const struct bounds *b, ACC rr, ACC py) {
+  const double mass = (double)inertia(s, thread, own, p);
+  const double step = (double)rr / fmax(mass, -(double)py);
   if (!within(b, step)) return false;
-  cb_team_barrier(cb_operator_team(s->op)); /* two sums in the same place */
-  descend(s, thread, own, splat((S)step));
+  move(s, own, p, splat((S)step), true);
   return true;
 }
 
 /* All threads decide alike: by sums that are the same on each. What ends the work is
- * looked at before dv is touched, so that dv is finite whatever comes. Once the residual
- * is gone to rounding the work goes on with zero steps: every iteration costs the same,
- * and no 0/0 arises. */
+ * looked at before dv is touched, so that dv is finite whatever comes; *moved: whether it was.
+ * Once the residual is gone to rounding the work goes on with zero steps: every iteration
+ * costs the same, and no 0/0 arises. */
 static struct cb_ended iterate(const struct cb_stepper *s, size_t thread, struct share own,
-                               double *scale) {
+                               double *scale, bool *moved) {
   struct cb_team *team = cb_operator_team(s->op);
   const double roundoff = cb_operator_variant(s->op)->arithmetic->roundoff;
-  ACC rr = start(s, thread, own);
+  const T *p = s->vector[STEPPER_B], *r = p;
+  ACC rr = start(s, thread, own, p);
   *scale = scale_of(sqrt((double)rr));
   if (*scale != 1) {
+    r = s->vector[STEPPER_R], p = s->vector[STEPPER_P];
     begin_scaled(s, own, *scale);
     rr = rr * (ACC)*scale * (ACC)*scale;
-    cb_team_barrier(team);
+    cb_team_barrier(team, thread);
   }
   const ACC enough = rr * (ACC)(roundoff * roundoff);
   struct bounds bound = {.p = sqrt((double)rr), .scale = *scale};
   struct cb_ended ended = {CB_ENDED_ITERATIONS, 0};
   for (size_t k = 0; k < s->parameters.iterations; k++) {
     if (!isfinite((double)rr)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
-    cb_operator_product_part(s->op, thread, s->vector[STEPPER_P], s->vector[STEPPER_Y]);
-    cb_team_barrier(team);
+    cb_operator_product_part(s->op, thread, p, s->vector[STEPPER_Y]);
+    cb_team_barrier(team, thread);
     filter(s, scalars_of(s->nodes, own), s->vector[STEPPER_Y]);
-    const ACC py = curvature(s, thread, own);
+    const ACC py = curvature(s, thread, own, p);
     if (!(rr > enough)) ended.why = CB_ENDED_SOLVED;
     const bool solved = ended.why == CB_ENDED_SOLVED;
     if (!isfinite((double)py)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
     if (!solved && lacks_curvature(&bound, roundoff, (double)py)) {
-      const bool first = k == 0 && descend_without_curvature(s, thread, own, &bound, rr, py);
-      return (struct cb_ended){CB_ENDED_INDEFINITE, first ? 1 : k};
+      if (k == 0) *moved = descend_without_curvature(s, thread, own, p, &bound, rr, py);
+      return (struct cb_ended){CB_ENDED_INDEFINITE, k == 0 ? *moved : k};
     }
     const ACC alpha = solved ? 0 : rr / py;
     if (!within(&bound, (double)alpha)) return (struct cb_ended){CB_ENDED_OVERFLOW, k};
     bound.dv += (double)alpha * bound.p;
-    const ACC next = descend(s, thread, own, splat((S)alpha));
+    *moved = true;
     ended.iterations += !solved;
-    if (k + 1 == s->parameters.iterations) break;
-    const ACC beta = solved ? 0 : next / rr;
-    turn(s, own, splat((S)beta));
+    if (k + 1 == s->parameters.iterations) {
+      move(s, own, p, splat((S)alpha), k == 0);
+      break;
+    }
+    const ACC next = descend(s, thread, own, r, splat((S)alpha)), beta = solved ? 0 : next / rr;
+    r = s->vector[STEPPER_R];
+    turn(s, own, p, splat((S)alpha), splat((S)beta), k == 0);
+    p = s->vector[STEPPER_P];
     bound.p = sqrt((double)next) + (double)beta * bound.p;
     rr = next;
-    cb_team_barrier(team);
+    cb_team_barrier(team, thread);
   }
   return ended;
 }
 
 static void solve(struct cb_stepper *s, size_t thread) {
   const struct share own = share_of(s->nodes, s->threads, thread);
-  double scale;
-  const struct cb_ended ended = iterate(s, thread, own, &scale);
-  if (thread == 0) s->ended = ended;
-  if (scale == 1) return;
   const struct share scalars = scalars_of(s->nodes, own);
   S *dv = s->vector[STEPPER_DV];
-  for (size_t i = scalars.first; i < scalars.last; i++) dv[i] = (S)(dv[i] / scale);
+  double scale;
+  bool moved = false;
+  const struct cb_ended ended = iterate(s, thread, own, &scale, &moved);
+  if (thread == 0) s->ended = ended;
+  if (!moved)
+    for (size_t i = scalars.first; i < scalars.last; i++) dv[i] = 0;
+  else if (scale != 1)
+    for (size_t i = scalars.first; i < scalars.last; i++) dv[i] = (S)(dv[i] / scale);
 }
 
 static void advance(struct cb_stepper *s, size_t thread, void *positions, void *velocities) {

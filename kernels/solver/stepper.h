@@ -17,11 +17,6 @@ enum {
   STEPPER_VECTORS
 };
 
-/* A thread's share of two sums, on cache lines of its own. */
-struct cb_partial {
-  _Alignas(64) unsigned char sum[2][16];
-};
-
 struct cb_stepper {
   struct cb_operator *op; /* not owned */
   struct cb_step_parameters parameters;
@@ -29,8 +24,7 @@ struct cb_stepper {
   void *vector[STEPPER_VECTORS];
   uint32_t *fixed; /* [fixed_count] node numbers, ascending */
   size_t fixed_count;
-  struct cb_partial *partial; /* [threads] */
-  struct cb_ended ended;      /* thread 0 writes it */
+  struct cb_ended ended; /* thread 0 writes it */
 };
 
 #endif

@@ -113,7 +113,7 @@ void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thre
     add_row(&sum, y + STRIDE * i);
   }
   if (p->threads == 1) return;
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
   add_beyond(E, thread, y);
 }
 

@@ -98,7 +98,7 @@ INLINE void fill_rows(const struct cb_elements *E, size_t thread, bool scalar, b
                       bool gradients) {
   const struct cb_rows *own = &E->pattern->rows[thread];
   for (size_t i = own->first; i < own->last; i++) fill_upper(E, scalar, gradients, i);
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
   for (size_t i = own->first; i < own->last; i++) fill_lower(E, scalar, symmetric, i);
 }
 

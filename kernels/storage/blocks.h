@@ -109,7 +109,7 @@ DRIVER void drive_update_assembled(struct cb_elements *E, size_t thread, const S
     }
     part_end(E, thread, part);
   }
-  cb_team_barrier(E->team);
+  cb_team_barrier(E->team, thread);
   CB_NAME(cb_assemble)(E, thread, gradients);
 }
 #endif
