@@ -17,8 +17,12 @@
 #include "kernels/solver/stepper.h"
 #include "kernels/solver/vectors.h"
 
+/* Vectors begin at different places of their pages: a pass reads and writes up to seven, which
+ * would all want the same eight lines of the first cache. */
+enum { PAGE = 4096, LINES = 9 * 64 };
+
 static void free_stepper(struct cb_stepper *s) {
-  for (int i = 0; i < STEPPER_VECTORS; i++) free(s->vector[i]);
+  free(s->vector[0]);
   free(s->fixed);
   free(s);
 }
@@ -36,15 +40,12 @@ static enum cb_status create(struct cb_operator *op, const struct cb_step_parame
   if (!s) return CB_MEMORY;
   s->op = op, s->parameters = *p, s->nodes = nodes;
   s->threads = cb_team_threads(cb_operator_team(op));
-  const size_t bytes = (blocks_of(nodes) * BLOCK_SCALARS * sizeof(S) / 64 + 1) * 64;
-  bool there = true;
-  for (int i = 0; i < STEPPER_VECTORS; i++) {
-    s->vector[i] = cb_memory(bytes, 1);
-    there = there && s->vector[i];
-  }
+  const size_t bytes = (blocks_of(nodes) * BLOCK_SCALARS * sizeof(S) / PAGE + 1) * PAGE + LINES;
+  char *vectors = cb_memory(STEPPER_VECTORS, bytes);
+  for (size_t i = 0; vectors && i < STEPPER_VECTORS; i++) s->vector[i] = vectors + i * bytes;
   for (size_t n = 0; fixed && n < nodes; n++) s->fixed_count += fixed[n] != 0;
   s->fixed = malloc(s->fixed_count * sizeof *s->fixed + 1);
-  if (!there || !s->fixed) {
+  if (!vectors || !s->fixed) {
     free_stepper(s);
     return CB_MEMORY;
   }
