@@ -75,6 +75,12 @@ INLINE T join_nodes(const NODE *n) {
 }
 #if CB_LANES == 4
 #define NODE_OF(t, q) (t)
+#elif CB_LANES == 16 && defined __AVX512F__ /* gcc 12 would shuffle all sixteen lanes for each */
+#define HALF_OF(t, h)                                                                              \
+  ((h) ? _mm512_extractf32x8_ps((__m512)(t), 1) : _mm512_castps512_ps256((__m512)(t)))
+#define NODE_OF(t, q)                                                                              \
+  ((NODE)((q) % 2 ? _mm256_extractf128_ps(HALF_OF(t, (q) / 2), 1)                                  \
+                  : _mm256_castps256_ps128(HALF_OF(t, (q) / 2))))
 #else
 #define NODE_OF(t, q) __builtin_shufflevector(t, t, 4 * (q), 4 * (q) + 1, 4 * (q) + 2, 4 * (q) + 3)
 #endif
