@@ -152,10 +152,12 @@ INLINE int ANY(MASK m) {
 /* RSQRT: 1 / sqrt(a), a >= 0, to about one rounding. 1/0 is infinite, 1/infinity 0, of a < 0 NaN;
  * with AVX2 float lanes take a < 2^-126 for 0. Where the processor has an estimate y, this is it
  * times (1 - e)^(-1/2), e = 1 - a y^2, by the binomial series; where a y is not a number, y is
- * exact. ROUGH_SQRT: sqrt(a), a > 0, to 2^-11 at least, for what is iterated on. */
+ * exact. ROUGH_SQRT and ROUGH_INVERSE: sqrt(a), a > 0, and 1 / a to 2^-11 at least, for what is
+ * iterated on. */
 #if CB_IS(float) && CB_BYTES == 64 && defined __AVX512F__
 INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm512_rsqrt14_ps((__m512)a); }
 INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
+INLINE T ROUGH_INVERSE(T a) { return (T)_mm512_rcp14_ps((__m512)a); }
 INLINE T RSQRT(T a) {
   T y = RSQRT_ESTIMATE(a), ay = a * y, series = LIT(0.5) * (LIT(1) - ay * y);
   __mmask16 refine = _mm512_cmp_ps_mask((__m512)ay, (__m512)ay, _CMP_ORD_Q);
@@ -164,6 +166,7 @@ INLINE T RSQRT(T a) {
 #elif CB_IS(double) && CB_BYTES == 64 && defined __AVX512F__
 INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm512_rsqrt14_pd((__m512d)a); }
 INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
+INLINE T ROUGH_INVERSE(T a) { return (T)_mm512_rcp14_pd((__m512d)a); }
 INLINE T RSQRT(T a) {
   T y = RSQRT_ESTIMATE(a), ay = a * y, e = LIT(1) - ay * y;
   T series = e * (LIT(0.5) + e * (LIT(0.375) + e * (LIT(0.3125) + e * LIT(0.2734375))));
@@ -173,6 +176,7 @@ INLINE T RSQRT(T a) {
 #elif CB_IS(float) && CB_BYTES == 32 && defined __AVX2__
 INLINE T RSQRT_ESTIMATE(T a) { return (T)_mm256_rsqrt_ps((__m256)a); }
 INLINE T ROUGH_SQRT(T a) { return a * RSQRT_ESTIMATE(a); }
+INLINE T ROUGH_INVERSE(T a) { return (T)_mm256_rcp_ps((__m256)a); }
 INLINE T RSQRT(T a) {
   T y = RSQRT_ESTIMATE(a), ay = a * y, e = LIT(1) - ay * y;
   return SELECT(ay == ay, y + y * (e * (LIT(0.5) + e * LIT(0.375))), y);
@@ -180,6 +184,7 @@ INLINE T RSQRT(T a) {
 #else
 INLINE T RSQRT(T a) { return LIT(1) / SQRT(a); }
 INLINE T ROUGH_SQRT(T a) { return SQRT(a); }
+INLINE T ROUGH_INVERSE(T a) { return LIT(1) / a; }
 #endif
 
 #if CB_LANES == 1

@@ -46,6 +46,7 @@ static double rough, jacobi;
 #include "kernels/arithmetic.h"
 #define ROUGH_SQRT(a) (SQRT(a) * (1 + (T)rough))
 #define JACOBI_SQRT(a) (SQRT(a) * (1 + (T)jacobi))
+#define JACOBI_RATIO(a, b) ((a) / (b) * (1 + (T)jacobi))
 #include "kernels/frames/polar_closed.h"
 #include "kernels/frames/polar_eigen.h"
 #include "kernels/frames/polar_higham.h"

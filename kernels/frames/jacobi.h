@@ -10,9 +10,10 @@
 #include "kernels/frames/iterations.h"
 #include "kernels/tensor3.h"
 
-/* In float an estimate will do: the angle need not be exact, only t : u. */
+/* In float estimates will do: the angle need not be exact, only t : u. */
 #ifndef JACOBI_SQRT
 #define JACOBI_SQRT(a) (sizeof(S) == sizeof(float) ? ROUGH_SQRT(a) : SQRT(a))
+#define JACOBI_RATIO(a, b) (sizeof(S) == sizeof(float) ? (a)*ROUGH_INVERSE(b) : (a) / (b))
 #endif
 
 /* Columns that fast rotations are applied to stay orthogonal and get longer, by at
@@ -26,7 +27,7 @@ INLINE void jacobi_turn(T p, T q, T r, int j, int k, T *e, T *t, T *u) {
   const T least = LIT(sizeof(S) == sizeof(float) ? 1e-37 : 1e-300);
   T x = e[k] * p - e[j] * q;
   T h = JACOBI_SQRT(x * x + (LIT(4) * (e[j] * e[k]) * (r * r) + least));
-  T w = (r + r) / SELECT(x < LIT(0), x - h, x + h);
+  T w = JACOBI_RATIO(r + r, SELECT(x < LIT(0), x - h, x + h));
   *t = e[j] * w, *u = e[k] * w;
   T longer = LIT(1) + *t * *u;
   e[j] = e[j] * longer, e[k] = e[k] * longer;
