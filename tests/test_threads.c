@@ -32,7 +32,7 @@ struct relay {
   bool ahead;
 };
 
-/* After each barrier, everybody has done the round before it. */
+/* After each barrier, everybody has done the round before it, and knows what others told. */
 static void run_relay(void *context, size_t thread) {
   struct relay *r = context;
   for (size_t n = 1; n <= 200; n++) {
@@ -40,7 +40,13 @@ static void run_relay(void *context, size_t thread) {
     cb_team_barrier(r->team, thread);
     for (size_t t = 0; t < r->threads; t++)
       if (r->round[t] != n) r->ahead = true;
-    cb_team_barrier(r->team, thread);
+    const size_t word = 100 * n + thread;
+    cb_team_tell(r->team, thread, &word, sizeof word);
+    for (size_t t = 0; t < r->threads; t++) {
+      size_t told;
+      memcpy(&told, cb_team_told(r->team, thread, t), sizeof told);
+      if (told != 100 * n + t) r->ahead = true;
+    }
   }
 }
 

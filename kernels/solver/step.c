@@ -17,7 +17,7 @@
 #include "kernels/solver/stepper.h"
 #include "kernels/solver/vectors.h"
 
-/* Vectors begin at different places of their pages: a pass reads and writes up to seven, which
+/* Vectors begin at different places of their pages: a pass reads and writes up to six, which
  * would all want the same eight lines of the first cache. */
 enum { PAGE = 4096, LINES = 9 * 64 };
 
