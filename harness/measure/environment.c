@@ -69,6 +69,19 @@ static void read_caches(struct cb_environment *e) {
   }
 }
 
+/* The name, and what it may hide: hypervisors give one name to processors of several
+ * generations. */
+static void read_cpu(size_t size, char *cpu) {
+  char name[96] = "unknown", family[16] = "", model[16] = "";
+  read_cpuinfo("model name", sizeof name, name);
+  read_cpuinfo("cpu family", sizeof family, family);
+  read_cpuinfo("model\t", sizeof model, model);
+  if (*family && *model)
+    snprintf(cpu, size, "%s (family %s, model %s)", name, family, model);
+  else
+    snprintf(cpu, size, "%s", name);
+}
+
 /* System and version number; what follows a hyphen names who built it. */
 static void read_kernel(size_t size, char *kernel) {
   struct utsname name;
@@ -83,8 +96,7 @@ static void read_kernel(size_t size, char *kernel) {
 void cb_environment_read(struct cb_environment *e) {
   *e = (struct cb_environment){.threads = 1};
   char mhz[32] = "0";
-  snprintf(e->cpu, sizeof e->cpu, "unknown");
-  read_cpuinfo("model name", sizeof e->cpu, e->cpu);
+  read_cpu(sizeof e->cpu, e->cpu);
   read_cpuinfo("cpu MHz", sizeof mhz, mhz);
   e->mhz = atof(mhz);
   cpu_set_t set;
