@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "kernels/memory.h"
+
 /* One element at one edge: the high node, then 16 times the element's number plus 4
  * times the vertex of the low node plus that of the high one. */
 typedef uint64_t share;
@@ -138,9 +140,10 @@ static enum cb_status allocate(struct cb_pattern *p, size_t terms) {
   uint32_t **arrays[] = {&p->row_start, &p->column,     &p->edge_start, &p->lower_start,
                          &p->mirror,    &p->term_start, &p->term};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-    *arrays[i] = malloc(counts[i] * sizeof **arrays[i] + 1);
+    const size_t count = counts[i] + CB_PATTERN_AHEAD;
+    *arrays[i] = cb_memory(count, sizeof **arrays[i]);
     if (!*arrays[i]) return CB_MEMORY;
-    p->bytes += counts[i] * sizeof **arrays[i];
+    p->bytes += count * sizeof **arrays[i];
   }
   p->rows = malloc(p->threads * sizeof *p->rows);
   p->bytes += p->threads * sizeof *p->rows;

@@ -23,6 +23,9 @@ struct cb_rows {
   size_t beyond;      /* where its rows [last, reach) begin in a list of all threads' */
 };
 
+/* Every list ends with so many zeros more, so that loops may look ahead. */
+enum { CB_PATTERN_AHEAD = 128 };
+
 struct cb_pattern {
   size_t nodes, edges, blocks; /* blocks = nodes + 2 edges; symmetric: nodes + edges */
   bool symmetric;              /* only the diagonal and what is above it */

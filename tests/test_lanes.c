@@ -116,16 +116,25 @@ static bool is_widest(int a) {
  * the loops are others, or take other ways. */
 static void lanes_give_the_operator_of_large_meshes(void **state) {
   (void)state;
-  static const char *const names[] = {"qr-updated", "linear", "polar-tangent"};
+  static const struct {
+    const char *model;
+    enum cb_storage storage;
+  } larges[] = {{"qr-updated", CB_EBE_CLUSTER},
+                {"linear", CB_EBE_CLUSTER},
+                {"polar-tangent", CB_EBE_CLUSTER},
+                {"qr-updated", CB_BCSR},
+                {"qr-updated", CB_BCSR_SYMMETRIC},
+                {"qr-updated", CB_CSR}};
   gsl_rng *rng = scene_rng();
   struct scene s = {.condition = 1};
   struct cb_material m = scene_material(false);
   assert_int_equal(cb_mesh_grid(27, 27, 27, 1, &s.mesh), CB_OK);
   scene_complete(rng, &s);
   for (int a = 0; a < lane_count; a++)
-    for (size_t i = 0; is_widest(a) && i < sizeof names / sizeof *names; i++) {
-      const struct cb_variant v = {scene_model(lanes[a], names[i]), CB_EBE_CLUSTER, lanes[a]};
-      const struct cb_variant scalar = {scene_model(scene_f64(), names[i]), CB_EBE, scene_f64()};
+    for (size_t i = 0; is_widest(a) && i < sizeof larges / sizeof *larges; i++) {
+      const char *name = larges[i].model;
+      const struct cb_variant v = {scene_model(lanes[a], name), larges[i].storage, lanes[a]};
+      const struct cb_variant scalar = {scene_model(scene_f64(), name), CB_EBE, scene_f64()};
       struct run r;
       run_open(&r, &s, &v, &m, 1);
       assert_true(cb_operator_bytes(r.op) > 8500000);

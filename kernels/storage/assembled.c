@@ -61,8 +61,11 @@ INLINE void add_transposed(const S *K, const SPREAD *u, S *y) {
 }
 #endif
 
-void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, size_t thread, const void *vector,
-                              void *result) {
+/* What is far is asked for so many numbers before it is needed. */
+enum { NUMBERS_AHEAD = 4096 / sizeof(S) };
+
+INLINE void product_bcsr(const struct cb_elements *E, size_t thread, const void *vector,
+                         void *result, bool far) {
   const struct cb_pattern *p = E->pattern;
   const struct cb_rows own = p->rows[thread];
   const S *restrict u = vector, *restrict K = E->values;
@@ -71,10 +74,20 @@ void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, size_t thread, const 
   STAGE(STAGE_PRODUCT);
   for (size_t i = own.first; i < own.last; i++) {
     ROW_SUM sum = {0};
-    for (size_t n = row[i], end = row[i + 1]; n < end; n++)
+    for (size_t n = row[i], end = row[i + 1]; n < end; n++) {
+      if (far) __builtin_prefetch(K + 9 * n + NUMBERS_AHEAD);
       add_block(&sum, K + 9 * n, u + STRIDE * (size_t)column[n]);
+    }
     add_row(&sum, y + STRIDE * i);
   }
+}
+
+void CB_NAME(cb_product_bcsr)(const struct cb_elements *E, size_t thread, const void *vector,
+                              void *result) {
+  if (LANES > 1 && E->kept_bytes >= PRODUCT_FETCHES)
+    product_bcsr(E, thread, vector, result, true);
+  else
+    product_bcsr(E, thread, vector, result, false);
 }
 
 /* y += what earlier threads' rows add to this one's. */
@@ -89,8 +102,8 @@ static void add_beyond(const struct cb_elements *E, size_t thread, S *y) {
 }
 
 /* What its rows add to other threads' is kept apart until all are there. */
-void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thread,
-                                        const void *vector, void *result) {
+INLINE void product_bcsr_symmetric(const struct cb_elements *E, size_t thread, const void *vector,
+                                   void *result, bool far) {
   const struct cb_pattern *p = E->pattern;
   const struct cb_rows own = p->rows[thread];
   const S *restrict u = vector, *restrict K = E->values;
@@ -106,6 +119,7 @@ void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thre
     add_block(&sum, K + 9 * n, u + STRIDE * i);
     for (n++; n < end; n++) {
       const size_t j = column[n];
+      if (far) __builtin_prefetch(K + 9 * n + NUMBERS_AHEAD);
       add_block(&sum, K + 9 * n, u + STRIDE * j);
       add_transposed(K + 9 * n, &spread,
                      j < own.last ? y + STRIDE * j : beyond + STRIDE * (j - own.last));
@@ -115,6 +129,14 @@ void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thre
   if (p->threads == 1) return;
   cb_team_barrier(E->team, thread);
   add_beyond(E, thread, y);
+}
+
+void CB_NAME(cb_product_bcsr_symmetric)(const struct cb_elements *E, size_t thread,
+                                        const void *vector, void *result) {
+  if (LANES > 1 && E->kept_bytes >= PRODUCT_FETCHES)
+    product_bcsr_symmetric(E, thread, vector, result, true);
+  else
+    product_bcsr_symmetric(E, thread, vector, result, false);
 }
 
 /* Scalar rows: each number has a column index of its own, as in textbook csr. */

@@ -21,13 +21,21 @@ INLINE struct block_row row_at(const struct cb_elements *E, bool scalar, size_t 
   return (struct block_row){E->values + 9 * start, 3, 3 * (E->pattern->row_start[row + 1] - start)};
 }
 
+/* What is far is asked for so many terms, or blocks, before it is needed: elements are not in
+ * the order of the edges, so that no processor foresees it. */
+enum { TERMS_AHEAD = CB_PATTERN_AHEAD / 2, BLOCKS_AHEAD = 16 };
+
 /* Sum of the elements' w_low w_high^T at one edge, expanded. */
-INLINE struct block sum_gradients(const struct cb_elements *E, size_t edge) {
+INLINE struct block sum_gradients(const struct cb_elements *E, size_t edge, bool far) {
   const struct cb_pattern *p = E->pattern;
   const S *w = (const S *)E->state;
   struct block X = {0};
-  for (size_t n = p->term_start[edge]; n < p->term_start[edge + 1]; n++)
-    block_add_product(&X, w + p->term[2 * n], w + p->term[2 * n + 1]);
+  for (size_t n = p->term_start[edge]; n < p->term_start[edge + 1]; n++) {
+    const uint32_t *term = p->term + 2 * n, *later = term + 2 * TERMS_AHEAD;
+    if (far) __builtin_prefetch(w + later[0]);
+    if (far && 4 * STRIDE * sizeof(S) > 64) __builtin_prefetch(w + later[1]); /* another line */
+    block_add_product(&X, w + term[0], w + term[1]);
+  }
   return block_from_products(LANE(E->k, 0), &X);
 }
 
@@ -50,14 +58,15 @@ INLINE struct block sum_blocks(const struct cb_elements *E, size_t edge) {
 }
 
 /* Blocks above the diagonal; minus their sum goes to the diagonal. */
-INLINE void fill_upper(const struct cb_elements *E, bool scalar, bool gradients, size_t row) {
+INLINE void fill_upper(const struct cb_elements *E, bool scalar, bool gradients, bool far,
+                       size_t row) {
   const struct cb_pattern *p = E->pattern;
   const struct block_row own = row_at(E, scalar, row);
   S *diagonal = own.first + own.step * (cb_pattern_diagonal(p, row) - p->row_start[row]);
   S *at = diagonal + own.step;
   struct block rest = {0};
   for (size_t e = p->edge_start[row]; e < p->edge_start[row + 1]; e++, at += own.step) {
-    const struct block K = gradients ? sum_gradients(E, e) : sum_blocks(E, e);
+    const struct block K = gradients ? sum_gradients(E, e, far) : sum_blocks(E, e);
     block_store(&K, at, own.row_step);
     block_subtract(&rest, &K);
   }
@@ -74,13 +83,15 @@ INLINE struct block mirror_block(const struct cb_elements *E, bool scalar, size_
 }
 
 /* Blocks below the diagonal, if they are kept, and what they leave for it. */
-INLINE void fill_lower(const struct cb_elements *E, bool scalar, bool symmetric, size_t row) {
+INLINE void fill_lower(const struct cb_elements *E, bool scalar, bool symmetric, bool far,
+                       size_t row) {
   const struct cb_pattern *p = E->pattern;
   const struct block_row own = row_at(E, scalar, row);
   const uint32_t *column = p->column + p->row_start[row];
   S *at = own.first;
   struct block rest = {0};
   for (size_t n = p->lower_start[row]; n < p->lower_start[row + 1]; n++, column++) {
+    if (far && !scalar) __builtin_prefetch(E->values + 9 * (size_t)p->mirror[n + BLOCKS_AHEAD]);
     const struct block upper = mirror_block(E, scalar, n, column);
     block_subtract(&rest, &upper);
     if (symmetric) continue;
@@ -95,19 +106,21 @@ INLINE void fill_lower(const struct cb_elements *E, bool scalar, bool symmetric,
 }
 
 INLINE void fill_rows(const struct cb_elements *E, size_t thread, bool scalar, bool symmetric,
-                      bool gradients) {
+                      bool gradients, bool far) {
   const struct cb_rows *own = &E->pattern->rows[thread];
-  for (size_t i = own->first; i < own->last; i++) fill_upper(E, scalar, gradients, i);
+  for (size_t i = own->first; i < own->last; i++) fill_upper(E, scalar, gradients, far, i);
   cb_team_barrier(E->team, thread);
-  for (size_t i = own->first; i < own->last; i++) fill_lower(E, scalar, symmetric, i);
+  for (size_t i = own->first; i < own->last; i++) fill_lower(E, scalar, symmetric, far, i);
 }
 
 void CB_NAME(cb_assemble)(struct cb_elements *E, size_t thread, bool gradients) {
   const bool scalar = E->scalar_row, symmetric = E->pattern->symmetric;
+  const bool far = E->kept_bytes >= UPDATE_FETCHES;
   STAGE(STAGE_ASSEMBLY);
 #define FILL(scalar, symmetric)                                                                    \
-  gradients ? fill_rows(E, thread, scalar, symmetric, true)                                        \
-            : fill_rows(E, thread, scalar, symmetric, false)
+  !gradients ? fill_rows(E, thread, scalar, symmetric, false, false)                               \
+  : far      ? fill_rows(E, thread, scalar, symmetric, true, true)                                 \
+             : fill_rows(E, thread, scalar, symmetric, true, false)
   if (scalar)
     FILL(true, false);
   else if (symmetric)
