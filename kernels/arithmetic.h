@@ -187,12 +187,15 @@ INLINE T ROUGH_SQRT(T a) { return SQRT(a); }
 INLINE T ROUGH_INVERSE(T a) { return LIT(1) / a; }
 #endif
 
+/* SIGNED_AS(b, a): a, or -a where b is negative. */
 #if CB_LANES == 1
 INLINE T ABS(T a) {
   return sizeof(S) == 4 ? (T)fabsf((float)a) : sizeof(S) == 8 ? (T)fabs((double)a) : a < 0 ? -a : a;
 }
+INLINE T SIGNED_AS(T b, T a) { return b < 0 ? -a : a; }
 #else
 INLINE T ABS(T a) { return (T)((MASK)a & ~(MASK)LIT(-0.0)); }
+INLINE T SIGNED_AS(T b, T a) { return (T)((MASK)a ^ ((MASK)b & (MASK)LIT(-0.0))); }
 #endif
 
 #endif

@@ -74,9 +74,9 @@ INLINE void principal_of_any(const T *F, T *A, T *V) {
   scale_to_one(9, A);
   identity3(V);
   for (int m = 0; m < 2 * JACOBI_TURNS; m += 3) {
-    jacobi_columns_turn(A, V, e, 0, 1);
-    jacobi_columns_turn(A, V, e, 0, 2);
-    jacobi_columns_turn(A, V, e, 1, 2);
+    jacobi_columns_turn(m, A, V, e, 0, 1);
+    jacobi_columns_turn(m + 1, A, V, e, 0, 2);
+    jacobi_columns_turn(m + 2, A, V, e, 1, 2);
   }
   jacobi_normalise(V, e);
   for (int i = 0; i < 9; i++) A[i] = A[i] * e[i % 3];

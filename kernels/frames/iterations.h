@@ -27,6 +27,10 @@
 #define JACOBI_TURNS_FLOAT 11
 #define JACOBI_TURNS_DOUBLE 12
 #define JACOBI_TURNS PER_PRECISION(JACOBI_TURNS)
+/* The first so many by estimates of the angle, where the processor has them. */
+#define JACOBI_ROUGH_FLOAT (2 * JACOBI_TURNS_FLOAT) /* all: degenerate.h does twice as many */
+#define JACOBI_ROUGH_DOUBLE 8
+#define JACOBI_ROUGH PER_PRECISION(JACOBI_ROUGH)
 /* Not converged, on purpose. Each turn multiplies a small angle that is left by
  * s_max / (s_1 + s_2 + s_3), singular values of F: a third of it near rest. */
 #define QUATERNION_TURNS 4

@@ -10,24 +10,21 @@
 #include "kernels/frames/iterations.h"
 #include "kernels/tensor3.h"
 
-/* In float estimates will do: the angle need not be exact, only t : u. */
-#ifndef JACOBI_SQRT
-#define JACOBI_SQRT(a) (sizeof(S) == sizeof(float) ? ROUGH_SQRT(a) : SQRT(a))
-#define JACOBI_RATIO(a, b) (sizeof(S) == sizeof(float) ? (a)*ROUGH_INVERSE(b) : (a) / (b))
-#endif
-
 /* Columns that fast rotations are applied to stay orthogonal and get longer, by at
  * most sqrt(2) each: e[j] is the square of what column j has been multiplied by.
  * t, u := the fast rotation [1 -u; t 1] that makes [1 -u; t 1]^T [p r; r q] [1 -u; t 1]
- * diagonal, by the smaller angle; t = u = 0 when r = 0.
+ * diagonal, by the smaller angle; t = u = 0 when r = 0. The angle need not be exact, only
+ * t : u: estimates will do for the n-th turn, n < JACOBI_ROUGH.
  * in/out  e[3]  of which j and k are used */
-INLINE void jacobi_turn(T p, T q, T r, int j, int k, T *e, T *t, T *u) {
+INLINE void jacobi_turn(int n, T p, T q, T r, int j, int k, T *e, T *t, T *u) {
   /* Of the angle: tan 2a = y / x, tan a = y / (x + sign(x) hypot(x, y)), with
    * y^2 = 4 r^2 e_j e_k, t = tan a (e_j/e_k)^(1/2), u = tan a (e_k/e_j)^(1/2). */
   const T least = LIT(sizeof(S) == sizeof(float) ? 1e-37 : 1e-300);
   T x = e[k] * p - e[j] * q;
-  T h = JACOBI_SQRT(x * x + (LIT(4) * (e[j] * e[k]) * (r * r) + least));
-  T w = JACOBI_RATIO(r + r, SELECT(x < LIT(0), x - h, x + h));
+  T y = r + r, square = x * x + (e[j] * e[k] * (y * y) + least);
+  T sum = ABS(x) + (n < JACOBI_ROUGH ? ROUGH_SQRT(square) : SQRT(square));
+  y = SIGNED_AS(x, y);
+  T w = n < JACOBI_ROUGH ? y * ROUGH_INVERSE(sum) : y / sum;
   *t = e[j] * w, *u = e[k] * w;
   T longer = LIT(1) + *t * *u;
   e[j] = e[j] * longer, e[k] = e[k] * longer;
@@ -47,9 +44,9 @@ INLINE T column_square(const T *A, int j) {
 }
 
 /* Columns j, k of A = F V, and with them V, turned until orthogonal (Hestenes 1958). */
-INLINE void jacobi_columns_turn(T *A, T *V, T *e, int j, int k) {
+INLINE void jacobi_columns_turn(int n, T *A, T *V, T *e, int j, int k) {
   T t, u, r = A[j] * A[k] + A[3 + j] * A[3 + k] + A[6 + j] * A[6 + k];
-  jacobi_turn(column_square(A, j), column_square(A, k), r, j, k, e, &t, &u);
+  jacobi_turn(n, column_square(A, j), column_square(A, k), r, j, k, e, &t, &u);
   jacobi_columns(A, j, k, t, u);
   jacobi_columns(V, j, k, t, u);
 }
@@ -63,10 +60,10 @@ INLINE void jacobi_normalise(T *V, T *by) {
 }
 
 /* B[9] symmetric, V[9]: B := [1 -u; t 1]^T B [1 -u; t 1], its j, k element about 0. */
-INLINE void jacobi_eigen_turn(T *B, T *V, T *e, int j, int k) {
+INLINE void jacobi_eigen_turn(int n, T *B, T *V, T *e, int j, int k) {
   int o = 3 - j - k;
   T t, u, p = B[4 * j], q = B[4 * k], r = B[3 * j + k], jo = B[3 * j + o], ko = B[3 * k + o];
-  jacobi_turn(p, q, r, j, k, e, &t, &u);
+  jacobi_turn(n, p, q, r, j, k, e, &t, &u);
   B[4 * j] = p + t * (r + r + t * q);
   B[4 * k] = q - u * (r + r - u * p);
   B[3 * j + k] = B[3 * k + j] = r + t * q - u * (p + t * r);
@@ -84,9 +81,9 @@ INLINE void jacobi_eigen(const T *A, T *V, T *lambda) {
   for (int i = 0; i < 9; i++) B[i] = A[i];
   identity3(V);
   for (int n = 0; n < JACOBI_TURNS; n += 3) {
-    jacobi_eigen_turn(B, V, e, 0, 1);
-    if (n + 1 < JACOBI_TURNS) jacobi_eigen_turn(B, V, e, 0, 2);
-    if (n + 2 < JACOBI_TURNS) jacobi_eigen_turn(B, V, e, 1, 2);
+    jacobi_eigen_turn(n, B, V, e, 0, 1);
+    if (n + 1 < JACOBI_TURNS) jacobi_eigen_turn(n + 1, B, V, e, 0, 2);
+    if (n + 2 < JACOBI_TURNS) jacobi_eigen_turn(n + 2, B, V, e, 1, 2);
   }
   jacobi_normalise(V, e);
   for (int i = 0; i < 3; i++) lambda[i] = B[4 * i] * (e[i] * e[i]);

@@ -8,22 +8,37 @@
 #ifndef CB_FRAME_SVD_H
 #define CB_FRAME_SVD_H
 
+#include <stddef.h>
+
 #include "kernels/frames/principal.h"
 
-/* R := U V^T, det R = +1.
- * in   F[9]  row-major, 1 */
-INLINE void frame_svd(const T *F, T *R) {
-  T A[9], V[9], n[3], e[3] = {LIT(1), LIT(1), LIT(1)};
-  for (int i = 0; i < 9; i++) A[i] = F[i];
-  identity3(V);
-  for (int m = 0; m < JACOBI_TURNS; m += 3) {
-    jacobi_columns_turn(A, V, e, 0, 1);
-    if (m + 1 < JACOBI_TURNS) jacobi_columns_turn(A, V, e, 0, 2);
-    if (m + 2 < JACOBI_TURNS) jacobi_columns_turn(A, V, e, 1, 2);
+/* Alone without lanes: their numbers have no room in the registers together. */
+enum { SVD_AT_ONCE = LANES == 1 ? 1 : 3 };
+
+/* R := U V^T, det R = +1, of some packs turn about: the operations of a turn wait for each
+ * other, those of another pack are there to be done meanwhile.
+ * in   F[count][9]  row-major, 1; count <= SVD_AT_ONCE */
+INLINE void frames_svd(size_t count, const T (*F)[9], T (*R)[9]) {
+  T A[SVD_AT_ONCE][9], V[SVD_AT_ONCE][9], e[SVD_AT_ONCE][3], n[3];
+#pragma GCC unroll 3
+  for (size_t k = 0; k < count; k++) {
+    for (int i = 0; i < 9; i++) A[k][i] = F[k][i];
+    for (int i = 0; i < 3; i++) e[k][i] = LIT(1);
+    identity3(V[k]);
   }
-  jacobi_normalise(V, e);
-  for (int j = 0; j < 3; j++) n[j] = column_square(A, j) * (e[j] * e[j]);
-  frame_from_principal(F, LEAST_SQUARE, n, A, V, R);
+#pragma GCC unroll 12
+  for (int m = 0; m < JACOBI_TURNS; m++)
+#pragma GCC unroll 3
+    for (size_t k = 0; k < count; k++)
+      jacobi_columns_turn(m, A[k], V[k], e[k], m % 3 == 2, m % 3 == 0 ? 1 : 2);
+#pragma GCC unroll 3
+  for (size_t k = 0; k < count; k++) {
+    jacobi_normalise(V[k], e[k]);
+    for (int j = 0; j < 3; j++) n[j] = column_square(A[k], j) * (e[k][j] * e[k][j]);
+    frame_from_principal(F[k], LEAST_SQUARE, n, A[k], V[k], R[k]);
+  }
 }
+
+INLINE void frame_svd(const T *F, T *R) { frames_svd(1, (const T(*)[9])F, (T(*)[9])R); }
 
 #endif

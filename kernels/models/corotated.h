@@ -7,11 +7,18 @@
  *                   what is tuned); FRAME_PACK and FRAME_WORLD, with the contracts of
  *                   frame_pack and frame_world below, where something else is to be done
  *                   than they do; ANY_PACK, a frame_pack of what FRAME_WORLD cannot
+ *   FRAMES_AT_ONCE, FRAME_ROTATIONS(count, F, R)  where frames of several packs take less
+ *                   time together: those of F[count][9], count <= FRAMES_AT_ONCE
  * and then lists its models with COROTATED_FAMILY or COROTATED_MODEL.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/models/forms.h"
 #include "kernels/models/strain.h"
+
+#ifndef FRAMES_AT_ONCE
+#define FRAMES_AT_ONCE 1
+#endif
+_Static_assert((int)FRAMES_AT_ONCE <= (int)SLOTS_AT_ONCE, "clusters bring as many");
 
 /* Numbers that any frame here may remember. */
 enum { FRAME_MEMORY = 32 };
@@ -34,7 +41,7 @@ OUTLINE void frame_called(const struct cb_elements *E, const T *e, const T *F, T
  *               axes; not read for a precomputed B
  *         L[3]  exact: what the local stress / mu has at (2,1), (3,1), (3,2) beyond
  *               a symmetric one
- * Returns false where that is not for each lane: quick_pack_fn, or (exact) a pack for
+ * Returns false where that is not for each lane: quick_packs_fn, or (exact) a pack for
  * ANY_PACK. */
 #define FRAME_WORLD frame_world
 INLINE bool frame_world(const struct cb_elements *E, int policy, int exact, int ortho, int quick,
@@ -249,30 +256,38 @@ INLINE void call_any(const struct cb_elements *E, const T *rest, const T *e, con
 }
 #endif
 
+/* Gradients and force of one pack whose frame is there; world gradients. */
+INLINE void corotated_forces(const struct cb_elements *E, int policy, int exact, int ortho,
+                             const T *rest, const T *e, const T *ev, T h, T *memory, const T *R,
+                             const T *F, const T *L, T *w, T *f) {
+  (void)memory;
+  STAGE(STAGE_B);
+#ifdef LAZY
+  lazy_gradients(E, rest, e, R, F, memory, w);
+#else
+  world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
+#endif
+  STAGE(STAGE_FORCE);
+  world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
+}
+
 /* Frame, gradients and force of one pack. Isotropic or frameless: w are world
- * gradients and R is not needed afterwards; orthotropic: w are local gradients. False:
- * see quick_pack_fn. */
-INLINE bool corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho, int quick,
+ * gradients and R is not needed afterwards; orthotropic: w are local gradients. */
+INLINE void corotated_pack(const struct cb_elements *E, int policy, int exact, int ortho,
                            const T *rest, const T *e, const T *own, const T *ev, T h, T *memory,
                            T *R, T *w, T *f) {
   if (NO_FRAME || !ortho) {
     T F[9], L[3];
-    const bool done = FRAME_WORLD(E, policy, exact, ortho, quick, rest, e, own, memory, R, F, L);
+    const bool done = FRAME_WORLD(E, policy, exact, ortho, 0, rest, e, own, memory, R, F, L);
 #ifdef ANY_PACK
-    if (exact && !quick && __builtin_expect(!done, 0)) {
+    if (exact && __builtin_expect(!done, 0)) {
       call_any(E, rest, e, own, ev, h, memory, R, w, f);
-      return true;
+      return;
     }
 #endif
-    STAGE(STAGE_B);
-#ifdef LAZY
-    lazy_gradients(E, rest, e, R, F, memory, w);
-#else
-    world_gradients(policy, SPARSE && in_own_order(E), NO_FRAME, rest, e, R, w);
-#endif
-    STAGE(STAGE_FORCE);
-    world_forces(E, policy, exact, ortho, rest, R, F, L, h, e, w, ev, f);
-    return done;
+    (void)done;
+    corotated_forces(E, policy, exact, ortho, rest, e, ev, h, memory, R, F, L, w, f);
+    return;
   }
   T P[9], y[6], q[9], p[9];
   FRAME_PACK(E, policy, exact, ortho, rest, e, own, memory, R, P, y);
@@ -284,7 +299,6 @@ INLINE bool corotated_pack(const struct cb_elements *E, int policy, int exact, i
   absorb(rest, h, w, ev ? q : NULL, P);
   forces3(P, w, p);
   for (int j = 0; j < 9; j += 3) apply3(R, p + j, f + j);
-  return true;
 }
 
 typedef void corotated_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
@@ -306,14 +320,32 @@ enum { QUICK = 0 };
 enum { QUICK = 1 };
 #endif
 
-/* One isotropic pack of a cluster: quick_pack_fn. */
-INLINE bool corotated_quick(const struct cb_elements *E, int policy, int exact, const T *rest,
-                            const T *e, const T *own, const T *ev, T h, T *memory, T *state, T *f) {
-  T R[9], w[9];
-  const bool done =
-      corotated_pack(E, policy, exact, 0, QUICK, rest, e, own, ev, h, memory, R, w, f);
-  if (!NO_FRAME) /* whose rest gradients are the world gradients */
-    for (int i = 0; i < 9; i++) state[i] = w[i];
+INLINE void keep_nine(const T *w, T *state) {
+  if (NO_FRAME) return; /* the rest gradients are the world gradients */
+  for (int i = 0; i < 9; i++) state[i] = w[i];
+}
+
+/* Isotropic packs of a cluster: quick_packs_fn. */
+INLINE bool corotated_quick(const struct cb_elements *E, int policy, int exact, size_t count,
+                            const struct slot *slot, T h) {
+  T F[FRAMES_AT_ONCE][9], R[FRAMES_AT_ONCE][9], L[FRAMES_AT_ONCE][3], w[9];
+  bool done = true;
+#ifdef FRAME_ROTATIONS
+#pragma GCC unroll 3
+  for (size_t k = 0; k < count; k++) deformation_gradient(policy, slot[k].rest, slot[k].e, F[k]);
+  FRAME_ROTATIONS(count, F, R);
+#else
+  for (size_t k = 0; k < count; k++)
+    done &= FRAME_WORLD(E, policy, exact, 0, QUICK, slot[k].rest, slot[k].e, slot[k].own,
+                        slot[k].memory, R[k], F[k], L[k]);
+#endif
+#pragma GCC unroll 3
+  for (size_t k = 0; k < count; k++) {
+    const struct slot *s = slot + k;
+    corotated_forces(E, policy, exact, 0, s->rest, s->e, s->ev, h, s->memory, R[k], F[k], L[k], w,
+                     s->f);
+    keep_nine(w, s->state);
+  }
   return done;
 }
 
@@ -322,13 +354,9 @@ INLINE void corotated_ebe(const struct cb_elements *E, corotated_pack_fn *pack, 
                           T *memory, T *state, T *f) {
   T R[9], w[9];
   pack(E, rest, e, own, ev, h, memory, R, w, f);
-  if (NO_FRAME) return; /* the rest gradients are the world gradients */
-  if (ortho) {
-    for (int i = 0; i < 9; i++) state[i] = R[i];
-    if (policy != POLICY_PRECOMPUTED)
-      for (int i = 0; i < 9; i++) state[9 + i] = w[i];
-  } else
-    for (int i = 0; i < 9; i++) state[i] = w[i];
+  keep_nine(ortho ? R : w, state);
+  if (ortho && !NO_FRAME && policy != POLICY_PRECOMPUTED)
+    for (int i = 0; i < 9; i++) state[9 + i] = w[i];
 }
 
 /* Orthotropic; the isotropic ones share cb_product_gradients. */

@@ -5,11 +5,10 @@
 
 /* Isotropic elements in clusters are what is timed: their work is inlined. */
 #define CLUSTER_UPDATE_iso(ID, POLICY, EXACT)                                                      \
-  INLINE bool ID##_quick(const struct cb_elements *E, const T *r, const T *e, const T *own,        \
-                         const T *ev, T h, T *m, T *s, T *f) {                                     \
-    return corotated_quick(E, POLICY, EXACT, r, e, own, ev, h, m, s, f);                           \
+  INLINE bool ID##_quick(const struct cb_elements *E, size_t count, const struct slot *s, T h) {   \
+    return corotated_quick(E, POLICY, EXACT, count, s, h);                                         \
   }                                                                                                \
-  STORAGE_CLUSTER(ID, iso, update_clusters_quickly, ID##_quick, ID##_ebe_iso)
+  STORAGE_CLUSTER(ID, iso, update_clusters_quickly, ID##_quick, FRAMES_AT_ONCE, ID##_ebe_iso)
 #define CLUSTER_UPDATE_ortho(ID, POLICY, EXACT)                                                    \
   STORAGE_CLUSTER(ID, ortho, drive_update_clusters, ID##_ebe_ortho)
 
@@ -17,7 +16,7 @@
 #define COROTATED_PACKS(ID, POLICY, EXACT, ORTHO, TAG)                                             \
   PACK_LINKAGE void ID##_pack_##TAG(const struct cb_elements *E, const T *r, const T *e,           \
                                     const T *own, const T *ev, T h, T *m, T *R, T *w, T *f) {      \
-    corotated_pack(E, POLICY, EXACT, ORTHO, 0, r, e, own, ev, h, m, R, w, f);                      \
+    corotated_pack(E, POLICY, EXACT, ORTHO, r, e, own, ev, h, m, R, w, f);                         \
   }                                                                                                \
   INLINE void ID##_ebe_##TAG(const struct cb_elements *E, const T *r, const T *e, const T *own,    \
                              const T *ev, T h, T *m, T *s, T *f) {                                 \

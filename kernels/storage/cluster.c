@@ -6,7 +6,7 @@
 void update_unit_again(struct cb_elements *E, struct cluster_work *W, bool moving, double h,
                        update_pack_fn *update) {
   for (size_t i = 0; i < W->shape->tets; i++)
-    update_slot(E, W, i, moving, LIT(h), NULL, update, E->x == NULL);
+    update_slots(E, W, i, 1, moving, LIT(h), NULL, update, E->x == NULL);
 }
 
 void drive_update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,

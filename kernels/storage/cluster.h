@@ -116,34 +116,54 @@ INLINE const T *rest_of_slot(const struct cb_elements *E, size_t slot, const T *
   return made;
 }
 
-/* One pack in a hurry: as update_pack_fn, but without a call for what is rare, which would
- * cost the loop its registers. False where the pack is to be made again by that. */
-typedef bool quick_pack_fn(const struct cb_elements *E, const T *rest, const T *e, const T *own,
-                           const T *ev, T h, T *memory, T *state, T *f);
+/* A slot's numbers, as update_pack_fn names them. */
+struct slot {
+  const T *rest, *e, *own, *ev;
+  T *memory, *state, *f;
+};
 
-/* The i-th tetrahedron of a pack's clusters; quick or, if that is NULL, update. */
-INLINE bool update_slot(struct cb_elements *E, struct cluster_work *W, size_t i, bool moving, T h,
-                        quick_pack_fn *quick, update_pack_fn *update, bool keep_state) {
-  const size_t slot = W->pack->slot + i;
+/* Some packs in a hurry: as update_pack_fn, but without a call for what is rare, which would
+ * cost the loop its registers. False where they are to be made again by that. */
+typedef bool quick_packs_fn(const struct cb_elements *E, size_t count, const struct slot *slot,
+                            T h);
+enum { SLOTS_AT_ONCE = 3 }; /* at most */
+
+/* `count` tetrahedra of a pack's clusters, from the i-th; quick or, if that is NULL, update. */
+INLINE bool update_slots(struct cb_elements *E, struct cluster_work *W, size_t i, size_t count,
+                         bool moving, T h, quick_packs_fn *quick, update_pack_fn *update,
+                         bool keep_state) {
+  struct slot slots[SLOTS_AT_ONCE];
+  T made[SLOTS_AT_ONCE][REST_ISOTROPIC], e[SLOTS_AT_ONCE][9], own[SLOTS_AT_ONCE][9],
+      ev[SLOTS_AT_ONCE][9], f[SLOTS_AT_ONCE][9], lost[18];
   const struct cb_corners *corners = E->packs->corners + W->shape->corners + i;
-  const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
-  T made[REST_ISOTROPIC], e[9], own[9], ev[9], f[9], lost[18];
-  T *state = E->state + slot * E->state_numbers;
-  fetch_for_update(E, slot);
-  const T *rest = rest_of_slot(E, slot, W->X, corners->vertex, order, made);
-  STAGE(STAGE_FRAME);
-  local_edges(W->x, corners->vertex, e);
-  if (order) own_edges(order, e, own);
-  if (moving) local_edges(W->v, corners->vertex, ev);
-  if (!keep_state) state[0] = rest[REST_W];
-  const T *first = order ? own : e, *velocity = moving ? ev : NULL;
-  T *memory = E->memory + slot * E->memory_numbers, *to = keep_state ? state : lost;
+#pragma GCC unroll 3
+  for (size_t k = 0; k < count; k++) {
+    const size_t slot = W->pack->slot + i + k;
+    const uint8_t *order = E->packs->order ? E->packs->order + slot * LANES : NULL;
+    T *state = E->state + slot * E->state_numbers;
+    fetch_for_update(E, slot);
+    const T *rest = rest_of_slot(E, slot, W->X, corners[k].vertex, order, made[k]);
+    STAGE(STAGE_FRAME);
+    local_edges(W->x, corners[k].vertex, e[k]);
+    if (order) own_edges(order, e[k], own[k]);
+    if (moving) local_edges(W->v, corners[k].vertex, ev[k]);
+    if (!keep_state) state[0] = rest[REST_W];
+    slots[k] = (struct slot){rest,
+                             e[k],
+                             order ? own[k] : e[k],
+                             moving ? ev[k] : NULL,
+                             E->memory + slot * E->memory_numbers,
+                             keep_state ? state : lost,
+                             f[k]};
+  }
   bool done = true;
   if (quick)
-    done = quick(E, rest, e, first, velocity, h, memory, to, f);
+    done = quick(E, count, slots, h);
   else
-    update(E, rest, e, first, velocity, h, memory, to, f);
-  add_locally(W->f, corners, f);
+    update(E, slots->rest, slots->e, slots->own, slots->ev, h, slots->memory, slots->state,
+           slots->f);
+#pragma GCC unroll 3
+  for (size_t k = 0; k < count; k++) add_locally(W->f, corners + k, f[k]);
   return done;
 }
 
@@ -153,12 +173,12 @@ INLINE bool update_slot(struct cb_elements *E, struct cluster_work *W, size_t i,
 void update_unit_again(struct cb_elements *E, struct cluster_work *W, bool moving, double h,
                        update_pack_fn *update);
 
-/* By quick, and by update where that is not enough, or quick is NULL.
+/* By quick, `count` tetrahedra at once, and by update where that is not enough, or quick is NULL.
  * Keeps REST_W in the state's place, and the positions, if there is room for them
  * (ebe-recompute). Inlined wherever it stands: with it the model's function, whose
  * numbers then stay in registers, which takes a third off the time. */
 INLINE void update_clusters_quickly(struct cb_elements *E, size_t thread, const S *x, const S *v,
-                                    double h, S *out, quick_pack_fn *quick,
+                                    double h, S *out, quick_packs_fn *quick, size_t count,
                                     update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct cluster_work W;
@@ -178,8 +198,11 @@ INLINE void update_clusters_quickly(struct cb_elements *E, size_t thread, const 
       load_cluster(x, node, W.shape->nodes, W.x);
       if (v) load_cluster(v, node, W.shape->nodes, W.v);
       bool done = true;
-      for (size_t i = 0; i < W.shape->tets; i++)
-        done &= update_slot(E, &W, i, v != NULL, LIT(h), quick, update, E->x == NULL);
+      size_t i = 0;
+      for (; i + count <= W.shape->tets; i += count)
+        done &= update_slots(E, &W, i, count, v != NULL, LIT(h), quick, update, E->x == NULL);
+      for (; count > 1 && i < W.shape->tets; i++)
+        done &= update_slots(E, &W, i, 1, v != NULL, LIT(h), quick, update, E->x == NULL);
       if (__builtin_expect(!done, 0)) update_unit_again(E, &W, v != NULL, h, update);
       add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
     }
@@ -189,7 +212,7 @@ INLINE void update_clusters_quickly(struct cb_elements *E, size_t thread, const 
 
 INLINE void update_clusters(struct cb_elements *E, size_t thread, const S *x, const S *v, double h,
                             S *out, update_pack_fn *update) {
-  update_clusters_quickly(E, thread, x, v, h, out, NULL, update);
+  update_clusters_quickly(E, thread, x, v, h, out, NULL, 1, update);
 }
 
 /* ---- product ------------------------------------------------------------------- */
