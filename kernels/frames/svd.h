@@ -12,8 +12,7 @@
 
 #include "kernels/frames/principal.h"
 
-/* Alone without lanes: their numbers have no room in the registers together. */
-enum { SVD_AT_ONCE = LANES == 1 ? 1 : 3 };
+enum { SVD_AT_ONCE = 3 };
 
 /* R := U V^T, det R = +1, of some packs turn about: the operations of a turn wait for each
  * other, those of another pack are there to be done meanwhile.

@@ -8,8 +8,9 @@
  *                   frame_pack and frame_world below, where something else is to be done
  *                   than they do; ANY_PACK, a frame_pack of what FRAME_WORLD cannot
  *   FRAMES_AT_ONCE, FRAME_ROTATIONS(count, F, R)  where frames of several packs take less
- *                   time together: those of F[count][9], count <= FRAMES_AT_ONCE
- * and then lists its models with COROTATED_FAMILY or COROTATED_MODEL.
+ *                   time together, as in lanes: those of F[count][9], count <= FRAMES_AT_ONCE;
+ * returns false where they are not that for each lane and then lists its models with
+ * COROTATED_FAMILY or COROTATED_MODEL.
  *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels/models/forms.h"
@@ -333,7 +334,7 @@ INLINE bool corotated_quick(const struct cb_elements *E, int policy, int exact, 
 #ifdef FRAME_ROTATIONS
 #pragma GCC unroll 3
   for (size_t k = 0; k < count; k++) deformation_gradient(policy, slot[k].rest, slot[k].e, F[k]);
-  FRAME_ROTATIONS(count, F, R);
+  done = FRAME_ROTATIONS(count, (const T(*)[9])F, R);
 #else
   for (size_t k = 0; k < count; k++)
     done &= FRAME_WORLD(E, policy, exact, 0, QUICK, slot[k].rest, slot[k].e, slot[k].own,

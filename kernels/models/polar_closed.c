@@ -6,6 +6,10 @@
 #define SPARSE 0
 #define NO_FRAME 0
 #define FRAME_ROTATION(e, F, memory, R) frame_polar_closed(F, R)
+#if CB_LANES > 1
+#define FRAMES_AT_ONCE CLOSED_AT_ONCE
+#define FRAME_ROTATIONS(count, F, R) frames_polar_closed(count, F, R)
+#endif
 #include "kernels/models/corotated.h"
 
 COROTATED_FAMILY(polar_closed, "polar-closed", "polar frame by invariants", "Hoger & Carlson 1984",

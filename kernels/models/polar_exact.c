@@ -41,6 +41,10 @@ INLINE void polar_exact_pack(const struct cb_elements *E, int policy, int exact,
 #define SPARSE 0
 #define NO_FRAME 0
 #define FRAME_ROTATION(e, F, memory, R) frame_polar_closed(F, R)
+#if CB_LANES > 1
+#define FRAMES_AT_ONCE CLOSED_AT_ONCE
+#define FRAME_ROTATIONS(count, F, R) frames_polar_closed(count, F, R)
+#endif
 #define FRAME_PACK polar_exact_pack
 #include "kernels/models/corotated.h"
 

@@ -6,8 +6,10 @@
 #define SPARSE 0
 #define NO_FRAME 0
 #define FRAME_ROTATION(e, F, memory, R) frame_svd(F, R)
+#if CB_LANES > 1
 #define FRAMES_AT_ONCE SVD_AT_ONCE
-#define FRAME_ROTATIONS(count, F, R) frames_svd(count, (const T(*)[9])(F), R)
+#define FRAME_ROTATIONS(count, F, R) (frames_svd(count, F, R), true)
+#endif
 #include "kernels/models/corotated.h"
 
 COROTATED_FAMILY(svd, "svd", "SVD frame", "Irving, Teran, Fedkiw 2004", AXES_WORLD, 0,

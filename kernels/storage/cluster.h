@@ -173,6 +173,10 @@ INLINE bool update_slots(struct cb_elements *E, struct cluster_work *W, size_t i
 void update_unit_again(struct cb_elements *E, struct cluster_work *W, bool moving, double h,
                        update_pack_fn *update);
 
+/* So many units that follow one which quick was in vain for are made by update at once: what
+ * collapses has neighbours that do. */
+enum { CAREFUL_UNITS = 7 };
+
 /* By quick, `count` tetrahedra at once, and by update where that is not enough, or quick is NULL.
  * Keeps REST_W in the state's place, and the positions, if there is room for them
  * (ebe-recompute). Inlined wherever it stands: with it the model's function, whose
@@ -182,6 +186,7 @@ INLINE void update_clusters_quickly(struct cb_elements *E, size_t thread, const 
                                     update_pack_fn *update) {
   const struct cb_packs *P = E->packs;
   struct cluster_work W;
+  size_t careful = 0;
   prepare_sums(W.f);
   if (E->x) {
     size_t first, last;
@@ -198,12 +203,15 @@ INLINE void update_clusters_quickly(struct cb_elements *E, size_t thread, const 
       load_cluster(x, node, W.shape->nodes, W.x);
       if (v) load_cluster(v, node, W.shape->nodes, W.v);
       bool done = true;
-      size_t i = 0;
+      size_t i = careful ? W.shape->tets : 0;
       for (; i + count <= W.shape->tets; i += count)
         done &= update_slots(E, &W, i, count, v != NULL, LIT(h), quick, update, E->x == NULL);
       for (; count > 1 && i < W.shape->tets; i++)
         done &= update_slots(E, &W, i, 1, v != NULL, LIT(h), quick, update, E->x == NULL);
-      if (__builtin_expect(!done, 0)) update_unit_again(E, &W, v != NULL, h, update);
+      if (__builtin_expect(!done || careful, 0)) {
+        update_unit_again(E, &W, v != NULL, h, update);
+        careful = careful ? careful - 1 : CAREFUL_UNITS;
+      }
       add_cluster(out, node, W.shape->nodes, W.pack->live, W.f);
     }
     part_end(E, thread, part);
