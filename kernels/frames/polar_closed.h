@@ -104,7 +104,7 @@ INLINE void frame_polar_closed(const T *F, T *R) {
   rotation_of_orthogonal(F, Q, sign, usual, R);
 }
 
-/* The same of some packs, count <= CLOSED_AT_ONCE; false where one is inverted or not usual. */
+/* Those of some packs, count <= CLOSED_AT_ONCE; false where one is inverted or not usual. */
 INLINE bool frames_polar_closed(size_t count, const T (*F)[9], T (*R)[9]) {
   T sign[CLOSED_AT_ONCE];
   CHOICE usual[CLOSED_AT_ONCE];
