@@ -138,7 +138,7 @@ static bool runs_here(const char *set) {
 }
 
 /* Every measured row is positive, in order, of this machine. */
-static void check_row(const char *line, size_t *peaks, size_t *attainable) {
+static void check_row(const char *line, size_t *peaks, size_t *attainable, size_t *barriers) {
   char quantity[32], set[32], unit[16];
   double value, low, high;
   size_t threads, bytes = 0;
@@ -147,6 +147,14 @@ static void check_row(const char *line, size_t *peaks, size_t *attainable) {
                      3);
     (*attainable)++;
     assert_true(value > 0 && isfinite(value));
+    return;
+  }
+  if (strncmp(line, "barrier,", 8) == 0) {
+    assert_int_equal(sscanf(line, "barrier,,%zu,%lf,%lf,%lf,ns,", &threads, &value, &low, &high),
+                     4);
+    (*barriers)++;
+    assert_int_equal(threads, cb_crew_limit());
+    assert_true(0 < low && low <= value && value <= high && isfinite(high));
     return;
   }
   const int cells = sscanf(line, "%31[^,],%31[^,],%zu,%lf,%lf,%lf,%15[^,],%zu", quantity, set,
@@ -168,11 +176,11 @@ static void test_verb(void **state) {
   assert_int_equal(p.exit_status, 0);
   char *written = read_text(temporary_path("machine/machine.csv"));
   assert_string_equal(written, p.out);
-  size_t sets = 0, rows = 0, peaks = 0, attainable = 0;
+  size_t sets = 0, rows = 0, peaks = 0, attainable = 0, barriers = 0;
   for (char *end, *line = p.out; (end = strchr(line, '\n')); line = end + 1, rows++) {
     *end = '\0';
     if (rows > 0)
-      check_row(line, &peaks, &attainable);
+      check_row(line, &peaks, &attainable, &barriers);
     else
       assert_string_equal(line,
                           "quantity,instruction_set,threads,value,low,high,unit,working_set_bytes");
@@ -182,7 +190,8 @@ static void test_verb(void **state) {
   assert_int_equal(peaks, crews * sets * CB_SCALARS);
   /* As many bandwidths, read and triad, as levels with an f32 and an f64 roof; DRAM at least. */
   assert_true(attainable >= crews * CB_SCALARS);
-  assert_int_equal(rows - 1 - peaks - attainable, attainable);
+  assert_int_equal(barriers, crews - 1);
+  assert_int_equal(rows - 1 - peaks - attainable - barriers, attainable);
   free(written);
   process_free(&p);
 }

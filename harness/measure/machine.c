@@ -11,6 +11,8 @@
 #include "harness/error.h"
 #include "harness/measure/crew.h"
 #include "harness/measure/environment.h"
+#include "harness/measure/timer.h"
+#include "kernels/team.h"
 
 const char *const cb_level_name[CB_LEVELS] = {"L1", "L2", "L3", "DRAM"};
 const char *const cb_scalar_name[CB_SCALARS] = {"f32", "f64"};
@@ -19,6 +21,7 @@ const char *const cb_scalar_name[CB_SCALARS] = {"f32", "f64"};
  * just woken has to itself. One pass over DRAM is longer in any case. */
 enum { EPOCHS = 25, DRAM_EPOCHS = 7 };
 enum { PAGE = 2 << 20 /* B, a large page */, BATCH = 1000 /* multiply-adds of a repeat */ };
+enum { BARRIERS = 10000 /* of an epoch */ };
 static const double EPOCH_S = 2e-3;
 static const double DRAM_LEAST = 256e6, DRAM_MOST = 512e6; /* B */
 
@@ -135,6 +138,30 @@ static enum cb_status measure_levels(struct session *s, enum cb_crew crew) {
   return status;
 }
 
+static void run_barriers(void *context, size_t thread) {
+  for (size_t i = 0; i < BARRIERS; i++) cb_team_barrier(context, thread);
+}
+
+/* The barrier that the steps of the kernels have 21 of, with the threads that they use. */
+static enum cb_status measure_barrier(struct session *s) {
+  double samples[EPOCHS], scatter;
+  const size_t threads = s->m.threads[CB_ALL];
+  struct cb_team *team;
+  show(s, "barrier");
+  if (cb_team_create(threads < CB_TEAM_MOST ? threads : CB_TEAM_MOST, &team))
+    return cb_fail_memory("the threads");
+  for (size_t e = 0; e < EPOCHS; e++) {
+    const double begun = cb_timer_now();
+    cb_team_run(team, run_barriers, team);
+    samples[e] = (cb_timer_now() - begun) / BARRIERS;
+  }
+  cb_team_free(team);
+  s->done++;
+  const enum cb_status status = cb_median_interval(EPOCHS, samples, &s->m.barrier, &scatter);
+  s->m.unstable += !cb_scatter_stable(scatter);
+  return status;
+}
+
 /* ---- what to measure ------------------------------------------------------- */
 
 /* A thread's part of that cache, B; 0: there is none. */
@@ -187,7 +214,9 @@ static void choose(struct session *s) {
     for (size_t set = 0; set < CB_LOOP_SETS; set++)
       s->m.peak[set][CB_F32][crew] = s->m.peak[set][CB_F64][crew] = NOT_MEASURED;
   }
-  s->total = (s->m.threads[CB_ALL] > 1 ? 2 : 1) * (sets * CB_SCALARS + 2 * levels);
+  const bool several = s->m.threads[CB_ALL] > 1;
+  s->m.barrier = NOT_MEASURED;
+  s->total = (several ? 2 : 1) * (sets * CB_SCALARS + 2 * levels) + several;
 }
 
 static void copy_crew(struct cb_machine *m) {
@@ -226,6 +255,7 @@ enum cb_status cb_machine_measure(void (*progress)(void *context, double share, 
     }
     status = measure_peaks(&s, crew);
     if (!status) status = measure_levels(&s, crew);
+    if (!status && crew == CB_ALL) status = measure_barrier(&s);
   }
   if (status) return status;
   s.m.measurements = s.total;

@@ -1,5 +1,6 @@
 /* machine.h - what this machine can do at most: arithmetic in registers, bandwidth
- * of each level of memory, and the roofline over both.
+ * of each level of memory, and the roofline over both; and how long threads take to
+ * meet.
  *
  * Source: roofline, Williams, Waterman & Patterson 2009; triad, McCalpin 1995.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -19,12 +20,13 @@ extern const char *const cb_scalar_name[CB_SCALARS];
  * measurement when that is one). */
 enum cb_crew { CB_ONE, CB_ALL, CB_CREWS };
 
-/* NaN: an instruction set or cache that is not there. */
+/* NaN: an instruction set or cache, or a second processor, that is not there. */
 struct cb_machine {
   size_t threads[CB_CREWS];
   struct cb_interval peak[CB_LOOP_SETS][CB_SCALARS][CB_CREWS]; /* flop/s; FMA = 2 flops */
   struct cb_interval read[CB_LEVELS][CB_CREWS];                /* B/s read */
   struct cb_interval triad[CB_LEVELS][CB_CREWS];               /* B/s read and written */
+  struct cb_interval barrier;              /* s, of threads[CB_ALL], at most CB_TEAM_MOST */
   size_t bytes[CB_LEVELS][CB_CREWS];       /* working set of all threads together; 0: not there */
   size_t measurements, unstable;           /* how many, and of these by cb_scatter_stable */
   const char *vectors;                     /* instruction set of read and triad */
@@ -37,7 +39,8 @@ struct cb_machine {
  * figure is partly that cache's. CB_MEMORY, CB_INTERRUPTED; recorded. */
 enum cb_status cb_machine_measure(void (*progress)(void *context, double share, const char *what),
                                   void *context, struct cb_machine *m);
-/* Every rate as a row, Gflop/s and GB/s, with these columns. NULL: out of memory. */
+/* Every rate as a row, Gflop/s and GB/s, and the barrier, ns, with these columns. NULL: out of
+ * memory. */
 #define CB_MACHINE_COLUMNS "quantity,instruction_set,threads,value,low,high,unit,working_set_bytes"
 struct cb_table *cb_machine_table(const struct cb_machine *m);
 

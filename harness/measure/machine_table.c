@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "harness/measure/machine.h"
+#include "kernels/team.h"
 
 static void add_rate(struct cb_table *t, const char *kind, const char *what, const char *set,
                      size_t threads, struct cb_interval rate, const char *unit) {
@@ -41,10 +42,23 @@ static void add_bandwidths(struct cb_table *t, const struct cb_machine *m, enum 
   }
 }
 
+static void add_barrier(struct cb_table *t, const struct cb_machine *m) {
+  const size_t threads = m->threads[CB_ALL];
+  cb_table_text(t, "barrier");
+  cb_table_missing(t);
+  cb_table_integer(t, (long long)(threads < CB_TEAM_MOST ? threads : CB_TEAM_MOST));
+  cb_table_number(t, 1e9 * m->barrier.value);
+  cb_table_number(t, 1e9 * m->barrier.low);
+  cb_table_number(t, 1e9 * m->barrier.high);
+  cb_table_text(t, "ns");
+  cb_table_missing(t);
+}
+
 struct cb_table *cb_machine_table(const struct cb_machine *m) {
   struct cb_table *t = cb_table_create(CB_MACHINE_COLUMNS);
   const enum cb_crew crews = m->threads[CB_ALL] > 1 ? CB_CREWS : CB_ALL;
   for (enum cb_crew crew = 0; t && crew < crews; crew++) add_peaks(t, m, crew);
   for (enum cb_crew crew = 0; t && crew < crews; crew++) add_bandwidths(t, m, crew);
+  if (t && crews == CB_CREWS) add_barrier(t, m);
   return t;
 }

@@ -13,9 +13,11 @@
 
 static const char doc[] =
     "Measure, in about five seconds, the multiply-adds in registers of each instruction set of "
-    "this processor and the bandwidth of each level of memory, on one thread and on all.\v"
+    "this processor and the bandwidth of each level of memory, on one thread and on all, and how "
+    "long the threads take to meet.\v"
     "A multiply-add counts as 2 flops, fused or not. 'read' sums numbers; 'triad' is a = b + s c, "
-    "whose bytes are those of the three arrays. Values are medians with their 95 % intervals, "
+    "whose bytes are those of the three arrays; 'barrier' is how long all threads take to wait for "
+    "each other, of which a step has about 20. Values are medians with their 95 % intervals, "
     "Gflop/s and GB/s are decimal. With --flops and --bytes, 'attainable' is the roofline: the "
     "best peak or the better bandwidth times flops / bytes, whichever is less.";
 
