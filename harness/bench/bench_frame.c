@@ -17,7 +17,7 @@ static const double MEMORY_SHARE = 0.5; /* of the machine's, at most */
 static const double STEPS_S = 0.4;      /* s of timing for each mesh */
 static const double RESOLUTION = 0.02;  /* of the cells along an edge, 6 % of all */
 static const double QUICK_RESOLUTION = 0.1;
-enum { ITERATIONS = 5, ROUNDS = 15, MIN_ROUNDS = 6, TRIALS = 3, LEAST = 2, MESHES = 2 };
+enum { ROUNDS = 15, MIN_ROUNDS = 6, TRIALS = 3, LEAST = 2, MESHES = 2 };
 
 static const struct kind {
   const char *name;
@@ -113,7 +113,7 @@ static size_t edge_of(const struct kind *kind, double tets, size_t most) {
 static enum cb_status add_frame(struct session *s, size_t measurements) {
   struct cb_frame frame = {.mesh = s->kind->name,
                            .threads = s->entry.threads,
-                           .iterations = ITERATIONS,
+                           .iterations = CB_SCALING_ITERATIONS,
                            .measurements = measurements,
                            .limit_s = LIMIT,
                            .fits = s->fits,

@@ -11,8 +11,9 @@
 #include "harness/measure/crew.h"
 #include "harness/progress.h"
 
-enum { FEW = 5, COUNTS = 6 };
-static const size_t ONE_COUNT[1] = {FEW}, ALL_COUNTS[COUNTS] = {1, 2, 5, 10, 20, 50};
+enum { COUNTS = 6 };
+static const size_t ONE_COUNT[1] = {CB_SCALING_ITERATIONS},
+                    ALL_COUNTS[COUNTS] = {1, 2, 5, 10, 20, 50};
 
 /* 500 to 2 million tetrahedra; each cache ends somewhere between. */
 static const struct size {
@@ -72,25 +73,6 @@ static enum cb_status add_speedups(struct cb_bench *b, const struct cb_block *bl
         status = cb_block_ratio(b, block, i, k, c, NAN);
     }
   return status;
-}
-
-const struct cb_row *cb_scaling_last(const struct cb_results *r, struct cb_entry entry) {
-  const struct cb_row *last = NULL;
-  char name[CB_NAME];
-  cb_variant_name(entry.variant, name);
-  for (size_t i = 0; i < r->row_count; i++) {
-    const struct cb_row *row = &r->rows[i];
-    if (strcmp(row->figure, "scaling") == 0 && strcmp(row->variant, name) == 0 &&
-        row->threads == entry.threads && row->iterations == FEW && isfinite(row->step.value) &&
-        (!last || row->tetrahedra > last->tetrahedra))
-      last = row;
-  }
-  return last;
-}
-
-double cb_scaling_bytes(const struct cb_row *row, double tetrahedra) {
-  enum { BESIDES = 250 }; /* node vectors, clusters or an order being found */
-  return tetrahedra * (row->bytes_per_tetrahedron + BESIDES);
 }
 
 /* The entries of one block: so many variants, each with all threads. */
@@ -216,7 +198,7 @@ static void print_sizes(const struct cb_results *r, FILE *stream) {
     cb_table_integer(t, (long long)row->threads);
     for (size_t s = 0; s < SIZE_COUNT; s++) {
       const size_t tets = tetrahedra(&SIZES[s]);
-      cb_bench_step_cell(t, cb_bench_row(r, row, tets, FEW), 1e9 / (double)tets);
+      cb_bench_step_cell(t, cb_bench_row(r, row, tets, CB_SCALING_ITERATIONS), 1e9 / (double)tets);
     }
   }
   cb_bench_print(stream,
@@ -243,7 +225,8 @@ static struct cb_interval speedup_at(const struct cb_results *r, const struct cb
                                      size_t tets) {
   for (size_t i = 0; i < r->ratio_count; i++) {
     const struct cb_ratio *c = &r->ratios[i];
-    if (strcmp(c->figure, "scaling") == 0 && c->tetrahedra == tets && c->iterations == FEW &&
+    if (strcmp(c->figure, "scaling") == 0 && c->tetrahedra == tets &&
+        c->iterations == CB_SCALING_ITERATIONS &&
         c->denominator_threads == like->denominator_threads &&
         strcmp(c->numerator, like->numerator) == 0)
       return c->ratio;

@@ -6,6 +6,8 @@
 
 #include "harness/bench/bench.h"
 
+enum { CB_SCALING_ITERATIONS = 5 };
+
 /* Find the largest mesh, a grid and an irregular one, whose step of 5 iterations is
  * done within 33 ms, for each entry, the fastest first: a row each, written at once.
  * First guesses come from the rows of figure "scaling"; an entry without one, which
