@@ -35,6 +35,7 @@ do for [kind in "svg png"] {
   set xlabel "ms of computing for a simulated second" # of both upper ones
   set xtics 10
   set xrange [*:3e4] noextend
+  set yrange [1e-4:1] # room for the key
   set ylabel "largest error of a displacement, of the size"
   set key inside bottom left
   set format x "%g"
@@ -43,6 +44,7 @@ do for [kind in "svg png"] {
     front using "ms":"error" with steps linewidth 6 linecolor rgb "#c0c0c0" title "front of all settings"
   unset label 1
   set xrange [*:3e3] noextend
+  set yrange [*:*]
   set title "More refined meshes at equal time: 10 iterations"
   plot for [i = 1:words(frames)] refined(word(frames, i)) using "ms":"error" with linespoints \
       linestyle i title word(frames, i)
