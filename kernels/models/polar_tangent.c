@@ -60,7 +60,8 @@ INLINE void turning(T k, const T *V, T *C) {
   T det = dot3(A, cofactor), size = ABS(A[0]) + ABS(A[4]) + ABS(A[8]);
   T most = ABS(cofactor[0]) + ABS(cofactor[4]) + ABS(cofactor[8]);
   /* Cofactors, of which det is a sum, lose roundings of size^2, however small they are. */
-  CHOICE usual = LESS(LEAST_TURN * most, det) & LESS(LOST * (size * size * size), det);
+  T least = LEAST_TURN * most, lost = LOST * (size * size * size);
+  CHOICE usual = LESS(least, det) & LESS(lost, det);
   T scale = (LIT(2) - k * (trace - LIT(3))) / CHOOSE(usual, det, LIT(1));
   for (int n = 0; n < 6; n++) {
     C[n] = -(scale * cofactor[3 * voigt_row[n] + voigt_column[n]]);
