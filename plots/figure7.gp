@@ -16,7 +16,8 @@ of_group(g) = "awk -F'[,/]' '$1 == 7 && $3 \"@\" $4 \"@\" $8 == \"" . g . "\" &&
   quoted("bench.csv")
 # Models whose name ends so, and all frames, in the order of the file.
 models(g, policy) = system(of_group(g) . " | grep -E -- '-(" . policy . ")$'")
-frames = system(first . " | grep -E -- '-(updated|precomputed|exact)$' | sed -E 's/-(updated|precomputed)$//' | awk '!seen[$0]++'")
+frames = system(first . " | grep -E -- '-(updated|precomputed|exact)$' | " . \
+  "sed -E 's/-(updated|precomputed)$//' | awk '!seen[$0]++'")
 frame(m) = system("echo " . m . " | sed -E 's/-(updated|precomputed)$//'")
 style_of(m) = int(system("echo '" . frames . "' | grep -nx '" . frame(m) . "' | cut -d: -f1"))
 # Times of "qr-updated" are what those of "polar-higham-updated" are divided by.

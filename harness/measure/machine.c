@@ -142,7 +142,7 @@ static void run_barriers(void *context, size_t thread) {
   for (size_t i = 0; i < BARRIERS; i++) cb_team_barrier(context, thread);
 }
 
-/* The barrier that the steps of the kernels have 21 of, with the threads that they use. */
+/* The barrier of the kernels' own threads: a step has about four an iteration. */
 static enum cb_status measure_barrier(struct session *s) {
   double samples[EPOCHS], scatter;
   const size_t threads = s->m.threads[CB_ALL];

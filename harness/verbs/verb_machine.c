@@ -17,7 +17,8 @@ static const char doc[] =
     "long the threads take to meet.\v"
     "A multiply-add counts as 2 flops, fused or not. 'read' sums numbers; 'triad' is a = b + s c, "
     "whose bytes are those of the three arrays; 'barrier' is how long all threads take to wait for "
-    "each other, of which a step has about 20. Values are medians with their 95 % intervals, "
+    "each other, of which a step has about four an iteration. Values are medians with their 95 % "
+    "intervals, "
     "Gflop/s and GB/s are decimal. With --flops and --bytes, 'attainable' is the roofline: the "
     "best peak or the better bandwidth times flops / bytes, whichever is less.";
 

@@ -83,6 +83,7 @@ INLINE void closed_factors(size_t count, const T (*F)[9], T (*Q)[9], bool uprigh
   }
 }
 
+/* The same of one pack, inverted or not; returns sign. */
 INLINE T closed_factor(const T *F, T *Q, CHOICE *usual) {
   T sign;
   closed_factors(1, (const T(*)[9])F, (T(*)[9])Q, false, &sign, usual);

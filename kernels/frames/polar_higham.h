@@ -66,6 +66,7 @@ INLINE void higham_factors(size_t count, const T (*F)[9], T (*Q)[9], T *sign, CH
     }
 }
 
+/* The same of one pack; returns sign. */
 INLINE T higham_factor(const T *F, T *Q, CHOICE *usual) {
   T sign = LIT(0);
   *usual = LESS(sign, LIT(1));
